@@ -146,7 +146,7 @@ class Pocket:
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
         turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
-        return cls(**_fields(False, mouth / sqrt(2.0), jaw_radius, turn, depth, fall_radius))
+        return _pocket(False, mouth / sqrt(2.0), jaw_radius, turn, depth, fall_radius)
 
     @classmethod
     def middle(
@@ -155,7 +155,7 @@ class Pocket:
         """Make a middle pocket as ``Pocket.corner``; ``cut`` in [90, 180): 90 is parallel, the WPA's 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
-        return cls(**_fields(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius))
+        return _pocket(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius)
 
     # from the corner, or the middle on the nose line: depth outwards along the axis, offset across it
 
@@ -212,9 +212,9 @@ class Pocket:
 _SIZES = ("start", "jaw_radius", "turn", "fall_depth", "fall_radius")
 
 
-def _fields(is_middle, *sizes):
-    """The fields of a ``Pocket``."""
-    return {"is_middle": is_middle, **dict(zip(_SIZES, sizes, strict=True))}
+def _pocket(is_middle, *sizes):
+    """The ``Pocket`` of these ``_SIZES``."""
+    return Pocket(is_middle=is_middle, **dict(zip(_SIZES, sizes, strict=True)))
 
 
 def _sizes(name, mouth, shelf, fall_radius):
@@ -293,15 +293,15 @@ def _bed(length, width, corner, middle, **ball):
 
 
 _INCH = 0.0254
-_CORNER = Pocket(**_fields(False, 0.0976352, 0.0889, 45.0, 0.047625, 0.0889))
-_TIGHT = Pocket(**_fields(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889))
-_MIDDLE = Pocket(**_fields(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319))
+_CORNER = _pocket(False, 0.0976352, 0.0889, 45.0, 0.047625, 0.0889)
+_TIGHT = _pocket(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889)
+_MIDDLE = _pocket(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319)
 
 
 def scale_pocket(pocket: Pocket, factor: float) -> Pocket:
     """A pocket of the same shape, ``factor`` times as large."""
-    sizes = {name: getattr(pocket, name) * (1.0 if name == "turn" else factor) for name in _SIZES}
-    return Pocket(is_middle=pocket.is_middle, **sizes)
+    sizes = (getattr(pocket, name) * (1.0 if name == "turn" else factor) for name in _SIZES)
+    return _pocket(pocket.is_middle, *sizes)
 
 
 _POOL_CORNER = Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0)
@@ -318,7 +318,7 @@ _BEDS = {
     "uk8": _bed(84 * _INCH, 42 * _INCH, _UK_CORNER, _UK_MIDDLE, R=_INCH, M=0.116, sin_theta=0.4),
     # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to
     # 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them: mouths
-    # and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
+    # and shelves of Alciatore's TP 3.6 and 3.5; the fall radii too, which the WPA leaves open.
     "pool9": _bed(100 * _INCH, 50 * _INCH, _POOL_CORNER, _POOL_MIDDLE, R=1.125 * _INCH, **_POOL_BALL),
     # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
     "carom": _bed(2.84, 1.42, None, None, R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),

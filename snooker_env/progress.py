@@ -13,16 +13,16 @@ __all__ = ["Progress"]
 
 
 class Progress:
-    """What a part of a long command does, how far it is, how fast, and how long it still takes: a bar of ``tqdm``.
+    """A progress bar of ``tqdm`` for a part of a long command: what it does, how far and fast it is, the time left.
 
     Parameters
     ----------
     what, total, unit
-        The work, in words; how much of it there is; and of what, in the plural.
+        The work in words, its amount, and its unit in the plural.
     done : int
-        How much was done before, by a run that is resumed.
+        Amount that an earlier run did, if this one resumes it.
     to : text stream, optional
-        Default None: ``sys.stderr``. Nothing is written where that is no terminal.
+        Default None: ``sys.stderr``. Nothing is written unless it is a terminal.
 
     Examples
     --------
@@ -32,15 +32,7 @@ class Progress:
     ...         progress.at(frame + 1, "lead 3.2")
     """
 
-    def __init__(
-        self,
-        what: str,
-        total: int,
-        unit: str,
-        *,
-        done: int = 0,
-        to: TextIO | None = None,
-    ):
+    def __init__(self, what: str, total: int, unit: str, *, done: int = 0, to: TextIO | None = None):
         self.done: int = done
         self.total: int = total
         silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")

@@ -85,9 +85,9 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions: Any = None
+        # rewards and steps so far: no state of a table holds them, save them with it
         self.episode_returns: Floats = np.zeros(num_envs)
         self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
-        """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)
@@ -175,8 +175,7 @@ class SnookerVecEnv(VecEnv):
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]
 
 
-HIDDEN = 64
-"""Units of each of the two layers that read a stroke, and of the one that reads the position."""
+HIDDEN = 64  # units of each of the two layers that read a stroke, and of the one that reads the position
 _AWAY = -1e8  # the score of a stroke that is not there
 
 
@@ -199,7 +198,7 @@ class _StrokesNet(torch.nn.Module):
         torch.nn.init.orthogonal_(self.score.weight, 0.01)
 
     def read(self, seen: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-        """What is made of each stroke (b, K, HIDDEN), whether it is there (b, K), and the state (b, S)."""
+        """The features of each stroke (b, K, HIDDEN), whether it is there (b, K), and the state (b, S)."""
         strokes = seen[:, : self.choices * self.columns].view(-1, self.choices, self.columns)
         state = seen[:, self.choices * self.columns :]
         first = torch.tanh(self.of_stroke(strokes) + self.of_state(state)[:, None])
@@ -210,14 +209,14 @@ class _StrokesNet(torch.nn.Module):
         return self.score(made)[..., 0]
 
     def judge(self, made: torch.Tensor, there: torch.Tensor, state: torch.Tensor) -> torch.Tensor:
-        """What is made of positions (b, HIDDEN)."""
+        """The features of positions (b, HIDDEN)."""
         here = there[..., None]
         mean = (made * here).sum(1) / here.sum(1).clamp(min=1)
         most = torch.where(here, made, -1.0).amax(1)
         return torch.tanh(self.position(torch.cat([mean, most, state], 1)))
 
     def forward(self, features: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Logits of the strokes (b, K), and what is made of positions (b, HIDDEN)."""
+        """Logits of the strokes (b, K), and the features of positions (b, HIDDEN)."""
         made, there, state = self.read(features)
         return torch.where(there, self.scores(made), _AWAY), self.judge(made, there, state)
 
@@ -227,7 +226,7 @@ class _StrokesNet(torch.nn.Module):
         return torch.where(there, self.scores(made), _AWAY)
 
     def forward_critic(self, features: torch.Tensor) -> torch.Tensor:
-        """What is made of positions alone."""
+        """The features of positions alone."""
         return self.judge(*self.read(features))
 
 
@@ -235,16 +234,10 @@ def _net_of(observations: Any, actions: Any) -> _StrokesNet:
     """The network for an environment; ValueError for spaces of another one."""
     choices = int(getattr(actions, "n", 0))
     shape = observations.shape or (0,)
-    if (
-        not (speeds_of(choices, False) or speeds_of(choices, True))
-        or len(shape) != 1
-        or shape[0] // choices != STROKE_SIZE
-    ):
-        given, allowed = (
-            f"{observations} and {actions}",
-            'must be those of action="strokes", observation="strokes"',
-        )
-        raise refuse_what("spaces", given, allowed)
+    menu = speeds_of(choices, False) or speeds_of(choices, True)
+    if not menu or len(shape) != 1 or shape[0] // choices != STROKE_SIZE:
+        allowed = 'must be those of action="strokes", observation="strokes"'
+        raise refuse_what("spaces", f"{observations} and {actions}", allowed)
     return _StrokesNet(choices, shape[0])
 
 

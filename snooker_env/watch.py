@@ -2,7 +2,7 @@
 
 Without --out the replay, an HTML file, opens in the browser. Visits are played with a real cue on held-out tables, one seed
 after the other, as ``benchmark.play_visits`` does; --at-least shows the first of --tries visits with that many points, else the
-longest. With --frame the agent plays a frame against --opponent, with the miss rule "clear_path"."""
+best one. With --frame the agent plays a frame against --opponent, with the miss rule "clear_path"."""
 
 import argparse
 import tempfile
@@ -33,7 +33,7 @@ FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a f
 
 
 def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
-    """A ``SnookerEnv`` after a whole visit or frame, with its history; a visit is that of ``play_visits``."""
+    """A ``SnookerEnv`` after a whole visit or frame, with its history; visits are those of ``play_visits``."""
     reads = VISITS if options.get("task", "visit") == "visit" else FRAMES
     every: dict[str, Any] = {**options, "action": "box", "observation": "flat", **reads}
     env = SnookerEnv(**every)
@@ -59,14 +59,14 @@ def describe(played: Replay) -> Iterator[str]:
 def parser() -> argparse.ArgumentParser:
     p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
-    add("--agent", help=f"a player, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
+    add("--agent", help=f"player: a name, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
     add("--opponent", help="the other player of the frame [the agent itself]")
     add("--out", type=Path, help="write FILE.html, .json, .mp4 or .gif instead of opening the browser")
     add("--layout", default="held_out", help="layout of the tables [%(default)s: those of the benchmark]")
     add("--noise", default="professional", help="execution errors [%(default)s]")
     add("--seed", type=int, default=HELD_OUT_SEED, help="seed of the first table [%(default)s]")
-    least = "show the first visit with so many points, else the longest"
+    least = "show the first visit with so many points, else the best one"
     add("--at-least", type=int, default=0, metavar="POINTS", help=least)
     add("--tries", type=int, default=200, help="most visits played to find it [%(default)s]")
     add("--speed", type=float, help="speed of a film, as a multiple of real time")
@@ -75,7 +75,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _film_options(args: argparse.Namespace) -> dict[str, Any]:
-    """The options of the film that is wanted, {} for a page; ValueError for arguments that do not agree."""
+    """The options of a film, {} for a page; ValueError if arguments conflict."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     if suffix not in SUFFIXES:
         raise refuse("out", str(args.out), f"must end in {', '.join(SUFFIXES)}")
@@ -137,7 +137,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
     if env.points < args.at_least:
-        print(f"No visit reached {args.at_least} points in {args.tries} tries: this one is the longest.")
+        print(f"No visit reached {args.at_least} points in {args.tries} tries; this is the best one.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
     played.save(file, **film)
     print(f"written: {file}", flush=True)

@@ -13,10 +13,8 @@ Z = (0.0, 0.0, 0.0)
 NAN, INF = float("nan"), float("inf")
 FIDELITY = 'must be "fast", "standard", "reference" or "euler:N" with N in [1, 10000000]'
 OTHER_FIDELITIES = (None, 3, "", "fast ", "FAST", ("fast",), ["fast"], b"fast", True, "euler", "Euler:10")
-WRONG_FIDELITIES = (
-    *OTHER_FIDELITIES,
-    *(f"euler:{n}" for n in ("0", "-1", "x", "", "1.5", " 5", "10000001", "\u0663")),
-)
+NO_STEPS = ("0", "-1", "x", "", "1.5", " 5", "10000001", "\u0663")
+WRONG_FIDELITIES = (*OTHER_FIDELITIES, *(f"euler:{n}" for n in NO_STEPS))
 
 
 def case(call, field, value, allowed, name=None):

@@ -14,11 +14,8 @@ def shot(actions, a, positions, on_table, on, physics="paper"):
     elevation = degrees(actions.steepest) if actions.elevation else False
     env = SnookerEnv(aim=actions.aim, elevation=elevation, physics=physics)
     env.reset(seed=0)
-    env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, BALL_ON] = (
-        positions,
-        on_table,
-        BallOn.RED,
-    )
+    env.tables.positions[0], env.tables.on_table[0] = positions, on_table
+    env.tables.game[0, BALL_ON] = BallOn.RED
     assert actions.aim == "absolute" or env.on == on
     env.keep_history = True
     env.step(np.asarray(a)[: env.action_space.shape[0]])

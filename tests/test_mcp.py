@@ -73,9 +73,8 @@ def test_an_anchor_that_plays_over_the_protocol_leaves_its_own_result(tmp_path, 
     game = judged(path, track)
     talk(Desk(game, track), one_visit)
     kept, own = read_result(path), play_episodes(TASK, "ghost_ball", seeds)
-    assert (
-        faults(kept) == [] and kept["incomplete"] is None and kept["rows"] == own.rows and numbers == [0, 1]
-    )
+    assert faults(kept) == [] and kept["incomplete"] is None and kept["rows"] == own.rows
+    assert numbers == [0, 1]
     assert all(map(np.array_equal, strokes_of(kept), own.strokes))
     assert (kept["agent"]["sources"], kept["agent"]["class"]) == ([f"program:mcp {track}"], "model_free")
     with pytest.raises(ValueError, match="must be a result of"):
@@ -121,10 +120,8 @@ def test_a_stroke_of_the_menu_pots_the_ball_that_it_names():
 
 
 def test_with_a_free_ball_the_menu_names_reds_and_colours():
-    game, position = (
-        FreeGame(),
-        {"cue": [0, 0], "reds": [[0.5, 0.9]], "blue": [0.6, -0.3], "pink": [-0.5, 1.2]},
-    )
+    game = FreeGame()
+    position = {"cue": [0, 0], "reds": [[0.5, 0.9]], "blue": [0.6, -0.3], "pink": [-0.5, 1.2]}
     game.new({"noise": "none", "opponent": "random"})
     place = {"position": position | {"black": [0, 1.46], "on": "red"}, "free_ball": True}
 

@@ -1,12 +1,11 @@
 """Where is machine code kept, and which is loaded? In the user's own folder; nothing foreign, old or damaged.
 
-* Files are pickles: who can write there can run code here. So folders are made for the user alone, and one
+* Files are pickles: whoever can write there can run code here. So folders are made for the user alone; a folder
   that somebody else (but root) owns or can write to is not used.
-* numba notices changes only in the file that *defines* a cached function, not in callees or constants
-  elsewhere. So the folder is named by a hash of all source in the rooms that kernels are made from; kernels
-  of others (agents, benchmarks) have a folder in it, named by a hash of their whole package. Equal copies
-  share machine code.
-* Files end with a checksum, of their place too: damaged machine code, or another kernel's, would crash the process.
+* numba notices changes only in the file that *defines* a cached function. So the folder is named by a hash of all
+  source in the rooms that kernels are made from; the kernels of other packages have a folder in it, named by a
+  hash of their whole package. Equal copies share machine code.
+* Files end with a checksum of bytes and place: damaged machine code, or another kernel's, would crash the process.
 * Whatever goes wrong, the kernel is compiled again, and the process warns once."""
 
 import hashlib
@@ -66,10 +65,8 @@ class UnsafeFolderError(OSError):
 
 
 def _check_own(folder: Path, *, home: bool = False) -> None:
-    """UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and its target.
-
-    In ``home``, which the user chose, its group may write (often the user alone), and others with a sticky
-    bit (/tmp)."""
+    """UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and its target. In ``home``, which
+    the user chose, their group may write, and others if the folder is sticky (/tmp)."""
     if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
     for status in (os.lstat(folder), os.stat(folder)):
@@ -89,10 +86,7 @@ def _claim(home: Path, folder: Path) -> None:
 
 
 def cache_folder() -> Path | None:
-    """The folder for compiled entry kernels; None: in memory only.
-
-    ``$NUMBA_CACHE_DIR``, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<kernel hash>``.
-    """
+    """``snooker_env/<kernel hash>`` in ``$NUMBA_CACHE_DIR``, ``$XDG_CACHE_HOME`` or ``~/.cache``; None: in memory only."""
     asked = map(os.environ.get, ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"))
     chosen = next(filter(None, asked), None) or os.path.expanduser("~/.cache")
     home = Path(chosen).absolute()

@@ -118,9 +118,7 @@ def array(
             raise refuse(field, value, f"must be real numbers of shape {_shape_text(shape)}")
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused
             a = np.array(raw, dtype=np.float64, order="C")
-    if a.shape != shape and (
-        a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
-    ):
+    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_shape_text(shape)}")
     if most is None:
         return a

@@ -17,7 +17,7 @@ def stop_with_reader() -> Iterator[None]:
         try:
             yield
         finally:
-            sys.stdout.flush()  # what is left would be lost without a word, or be said when Python ends
+            sys.stdout.flush()  # text left in the buffer would be lost in silence, or reported as Python ends
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise SystemExit(1) from None
@@ -32,8 +32,8 @@ def of_file(error: OSError) -> str:
 
 
 def exit_code(name: str, command: Callable[[], int], missing: Callable[[ImportError], str] = str) -> int:
-    """What ``command()`` returns; 130 after Ctrl-C; 1 if a library is missing (``missing`` says how to install it) or a file
-    cannot be read or written. Whatever it is, the command ``name`` says it in one line on stderr."""
+    """The result of ``command()``; 130 after Ctrl-C, 1 if a library is missing (``missing`` says how to install it) or a file
+    cannot be read or written, with one line on stderr that begins with ``name``."""
     code = 1
     try:
         with stop_with_reader():

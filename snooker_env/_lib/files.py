@@ -26,8 +26,8 @@ UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")  # temporary files: 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
     """Write a file so that ``path`` holds the old or the new content, complete, whenever the machine stops.
 
-    ``content``: bytes, a text, or a function that writes the file at a path with the same suffix. On failure
-    nothing is left, and the OSError names ``path``. A device or a pipe is written directly."""
+    ``content`` may be a function that writes a file at a path with the same suffix. An OSError names ``path``, and nothing
+    is left behind. A device or a pipe is written directly."""
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():
@@ -83,14 +83,13 @@ def _sound(text: str) -> Any:
 
 
 def strict_json(text: str | bytes) -> Any:
-    """What JSON in UTF-8 holds. ValueError for NaN, Infinity, 1e999, an integer beyond ``MOST_INTEGER``, a key twice
-    in one object, and what is nested deeper than ``DEPTH``."""
+    """What JSON in UTF-8 holds. ValueError for NaN, Infinity, 1e999, an integer beyond ``MOST_INTEGER``, a repeated key, and
+    more than ``DEPTH`` levels."""
     if isinstance(text, bytes):
         text = text.decode("utf-8")
+    numbers = dict.fromkeys(("parse_constant", "parse_int", "parse_float"), _sound)
     try:
-        read = json.loads(
-            text, parse_constant=_sound, parse_int=_sound, parse_float=_sound, object_pairs_hook=_once
-        )
+        read = json.loads(text, **numbers, object_pairs_hook=_once)
     except RecursionError:
         raise ValueError(f"it is nested deeper than {DEPTH}") from None
     inner = [read]
@@ -116,16 +115,15 @@ def without_checksum(content: dict[str, Any]) -> dict[str, Any]:
     """The content without its checksum; ValueError if it has none, or another."""
     rest = {name: value for name, value in dict(content).items() if name != CHECKSUM}
     if content.get(CHECKSUM) != _checksum(rest):
-        raise ValueError(f"it is damaged: its {CHECKSUM} is not that of the rest")
+        raise ValueError(f"it is damaged: its {CHECKSUM} does not match its content")
     return rest
 
 
 def read_json(
     path: str | Path, field: str = "path", wanted: str = "must be JSON", *, checked: bool = False
 ) -> Any:
-    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum, which it must have if ``checked``.
-
-    The ValueError names ``field``, the file, what is ``wanted`` and what is wrong. OSError if it cannot be read."""
+    """``strict_json`` of a file of at most ``MOST_JSON`` bytes, without its checksum, which must be there if ``checked``.
+    ValueError names ``field``, the file, what is ``wanted`` and the fault; OSError if the file cannot be read."""
     try:
         read = strict_json(read_bytes(path, MOST_JSON))
         found = isinstance(read, dict) and (checked or CHECKSUM in read)
@@ -152,7 +150,9 @@ def unzip(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
     with file.open(part) as packed:
         data = packed.read(part.file_size + 1)
     if len(data) != part.file_size:
-        raise ValueError(f"{part.filename} has not the {part.file_size:,} bytes that it should have")
+        raise ValueError(
+            f"{part.filename} does not have the {part.file_size:,} bytes that its directory says"
+        )
     return data
 
 
@@ -166,14 +166,14 @@ def _array(data: bytes) -> np.ndarray:
     shape, columns, kind = readers[version](file)
     size = len(data) - file.tell()
     if kind.hasobject or not kind.itemsize or math.prod(shape) * kind.itemsize != size:
-        raise ValueError(f"{size:,} bytes are no array of {kind} and shape {shape}")
+        raise ValueError(f"{size:,} bytes are not an array of {kind} and shape {shape}")
     order: Literal["F", "C"] = "F" if columns else "C"
     return np.ndarray(shape, kind, data, file.tell(), order=order).copy(order)
 
 
 def arrays_in(data: bytes) -> dict[str, np.ndarray]:
-    """The arrays of an ``.npz``, without objects: nothing is unpickled. ValueError for anything else, and for more
-    than ``MOST_NPZ`` bytes, by its directory before anything is unpacked; what is not compressed may be longer."""
+    """The arrays of an ``.npz``; nothing is unpickled. ValueError for anything else, and before unpacking if the directory
+    says more than ``MOST_NPZ`` bytes (or than ``data`` has)."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as file:
             parts, most = file.infolist(), max(MOST_NPZ, len(data))
@@ -185,11 +185,9 @@ def arrays_in(data: bytes) -> dict[str, np.ndarray]:
         raise ValueError(str(error).strip() or type(error).__name__) from None
 
 
-def read_npz(
-    path: str | Path, field: str = "path", wanted: str = "must be an .npz of arrays"
-) -> dict[str, np.ndarray]:
+def read_npz(path: str | Path) -> dict[str, np.ndarray]:
     """``arrays_in`` a file of at most ``MOST_NPZ`` bytes; errors as those of ``read_json``."""
     try:
         return arrays_in(read_bytes(path, MOST_NPZ))
     except ValueError as error:
-        raise refuse(field, str(path), f"{wanted} ({error})") from None
+        raise refuse("path", str(path), f"must be an .npz of arrays ({error})") from None

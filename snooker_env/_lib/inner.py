@@ -1,15 +1,11 @@
 """How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in; no machine code.
 
-numba optimises every function with all that it calls, and makes machine code of it: for inner kernels, which
-never run alone, two fifths of a first shot's time. So their library is complete as it is, with none of what
-they call in it; the entry kernel takes in each of them once and optimises all together, and callers find them
-under an entry point that is only a name. And most of what numba does for a function in general an inner kernel
-does not need: passes for closures and exceptions, code that counts references, a compile for each value of a
-constant integer, a clock around each call into LLVM, and what an operator gives for its types worked out anew
-each time. Without it all kernels together take four fifths of the time.
+By default numba optimises every function with all that it calls, and makes machine code of it: for inner kernels,
+which never run alone, two fifths of a first shot's time. Here an entry kernel takes in each inner kernel once and
+optimises all together. An inner kernel also skips passes for closures and exceptions, reference counts, a compile
+for each value of a constant integer and numba's clocks. All kernels then compile in four fifths of the time.
 
-It uses parts of numba that are not public; without them numba compiles as usual: the same results, later.
-"""
+This needs parts of numba that are not public; without them numba compiles as usual: the same results, later."""
 
 from contextlib import contextmanager
 from typing import Any
@@ -21,8 +17,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction, Function
 
-FIND = "get_call_type"
-"""The method of numba's functions that finds what they give for some types."""
+FIND = "get_call_type"  # the method of numba's functions that finds what they give for some types
 _PARTS = (
     (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
     (codegen.JITCPUCodegen, ("_function_pass_manager",)),
@@ -98,19 +93,9 @@ def _finding_once():
         setattr(BaseFunction, FIND, before)
 
 
-_UNUSED = {
-    "WithLifting",
-    "InlineClosureLikes",
-    "RewriteDynamicRaises",
-    "MakeFunctionToJitFunction",
-    "FindLiterallyCalls",
-    "LiteralUnroll",
-    "LiteralPropagationSubPipelinePass",
-    "InlineOverloads",
-    "NopythonRewrites",
-    "NoPythonSupportedFeatureValidation",
-    "DumpParforDiagnostics",
-}
+_UNUSED = "WithLifting InlineClosureLikes RewriteDynamicRaises MakeFunctionToJitFunction FindLiterallyCalls "
+_UNUSED += "LiteralUnroll LiteralPropagationSubPipelinePass InlineOverloads NopythonRewrites "
+_UNUSED += "NoPythonSupportedFeatureValidation DumpParforDiagnostics"
 """Passes of numba for what no inner kernel has: contexts, closures, exceptions, literals, sums of arrays."""
 
 
@@ -141,19 +126,15 @@ class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        made = targetctx.codegen()
-        flags = flags.copy()
+        library, flags = _Library(targetctx.codegen(), "inner kernel"), flags.copy()
         flags.no_compile = True
-        super().__init__(
-            typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals
-        )
+        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
 
     def define_pipelines(self):
         (passes,) = super().define_pipelines()
-        of_ours = {typed_passes.NativeLowering: _Lowering}
-        passes.passes = [
-            (of_ours.get(made, made), what) for made, what in passes.passes if made.__name__ not in _UNUSED
-        ]
+        of_ours, unused = {typed_passes.NativeLowering: _Lowering}, _UNUSED.split()
+        kept = [(made, what) for made, what in passes.passes if made.__name__ not in unused]
+        passes.passes = [(of_ours.get(made, made), what) for made, what in kept]
         passes.finalize()
         return [passes]
 

@@ -1,9 +1,7 @@
-"""How are kernels compiled? The one place of numba's options; where machine code is kept: ``cache.py``.
+"""How are kernels compiled? The one place of numba's options; ``cache.py`` says where machine code is kept.
 
 * Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
-* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch.
-* Only entry kernels are cached, under a hash of all the source that they may have been made from.
-"""
+* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch."""
 
 import gc
 from collections.abc import Callable
@@ -22,8 +20,7 @@ _ENTRY: dict[str, Any] = _OPTIONS | ENTRY_OPTIONS
 _INNER: dict[str, Any] = _OPTIONS | OPTIONS
 _INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
-ENTRIES: list[Any] = []
-"""All entry kernels of this process, in the order in which they were made."""
+ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
 
 
 class Entry(CPUDispatcher):
@@ -52,8 +49,7 @@ def kernel(
 ) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    Python cannot call it. It must not make arrays: so numba need not count references to its arrays, a fifth
-    of a shot.
+    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot.
 
     Parameters
     ----------
@@ -101,8 +97,8 @@ def entry(
 ) -> Any:
     """Compile a kernel that Python calls. Use as a decorator.
 
-    Its machine code is kept on disk, under a hash of the source of the package and of its module; but a
-    function that is in no file (a prompt, a notebook) is compiled in every process.
+    Its machine code is kept on disk, under a hash of the source of the package and of its module. A function
+    outside any file (in a prompt or a notebook) is compiled in every process.
 
     Parameters
     ----------

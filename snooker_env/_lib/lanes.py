@@ -1,12 +1,8 @@
-"""How does a kernel compute with four float64 at once? A type for four: one instruction where there is AVX.
+"""How does a kernel compute with four float64 at once? With a type for four: one instruction where there is AVX.
 
-``lanes(a, b, c, d)``, ``lanes_at(array, i)``, ``put_lanes(array, i, x)``, ``lane(x, k)`` (k a constant),
-``+`` and ``*``. Each lane's operation is the IEEE one: the results of four separate numbers.
-(``NUMBA_SLP_VECTORIZE`` finds such sums, but stores the numbers one by one, and a load of four waits: nothing
-is gained.)
-
-With ``NUMBA_DISABLE_JIT`` the same source works on small numpy arrays.
-"""
+Each lane's operation is the IEEE one, with the results of four separate numbers. (``NUMBA_SLP_VECTORIZE`` gains
+nothing here: it stores the numbers one by one, and a load of four waits.) With ``NUMBA_DISABLE_JIT`` the same
+source works on small numpy arrays."""
 
 import operator
 from typing import Any
@@ -73,10 +69,11 @@ def _make(typing_context, a, b, c, d):
 def _take(typing_context, x, k):
     if not isinstance(k, types.IntegerLiteral):
         return None
-    which = ir.Constant(_INT32, k.literal_value)
-    return types.float64(_LANES, k), lambda context, builder, signature, arguments: builder.extract_element(
-        arguments[0], which
-    )
+
+    def make(context, builder, signature, arguments):
+        return builder.extract_element(arguments[0], ir.Constant(_INT32, k.literal_value))
+
+    return types.float64(_LANES, k), make
 
 
 def _no_more(typing_context, x, y):
@@ -101,26 +98,17 @@ class _Both(ConcreteTemplate):
 infer_global: Any = templates.infer_global
 infer_global(operator.add)(_Both)
 infer_global(operator.mul)(_Both)
-lower_builtin(operator.add, _Lanes, _Lanes)(
-    lambda context, builder, signature, arguments: builder.fadd(*arguments)
-)
-lower_builtin(operator.mul, _Lanes, _Lanes)(
-    lambda context, builder, signature, arguments: builder.fmul(*arguments)
-)
+lower_builtin(operator.add, _Lanes, _Lanes)(lambda context, builder, signature, both: builder.fadd(*both))
+lower_builtin(operator.mul, _Lanes, _Lanes)(lambda context, builder, signature, both: builder.fmul(*both))
 
 # Intrinsics, not overloads: numba would compile a function for each use of those.
-lanes: Any = intrinsic(_make)
-"""Four numbers side by side."""
+lanes: Any = intrinsic(_make)  # four numbers side by side
 lanes_at: Any = intrinsic(_load)
 """The numbers i to i + 3 of a float64 array, of several axes too, in one piece; ends are not checked."""
-put_lanes: Any = intrinsic(_store)
-"""Writes x to the places i to i + 3 of such an array; ends are not checked."""
-lane: Any = intrinsic(prefer_literal=True)(_take)
-"""Number k of the four; k is a constant."""
-no_more: Any = intrinsic(_no_more)
-"""An integer whose bit k is 1 where lane k of x is at most that of y."""
-lesser: Any = intrinsic(_lesser)
-"""The lesser of two numbers in each lane."""
+put_lanes: Any = intrinsic(_store)  # writes x to the places i to i + 3 of such an array; ends are not checked
+lane: Any = intrinsic(prefer_literal=True)(_take)  # number k of the four; k is a constant
+no_more: Any = intrinsic(_no_more)  # an integer whose bit k is 1 where lane k of x is at most that of y
+lesser: Any = intrinsic(_lesser)  # the lesser of two numbers in each lane
 
 if getattr(config, "DISABLE_JIT", 0):
     lanes = lambda a, b, c, d: np.array([a, b, c, d])  # noqa: E731

@@ -1,5 +1,4 @@
-"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? On stderr, each compile of over a second: in a warm-up as a
-bar on a terminal, else in lines."""
+"""What does compiling report, unless ``SNOOKER_ENV_QUIET=1``? Each compile of over a second, on stderr."""
 
 import os
 import sys
@@ -62,8 +61,7 @@ _running: list[_WarmUp] = []
 
 @contextmanager
 def warming_up(kernels: Iterable[Any], tick: Callable[[int, int], None]) -> Iterator[None]:
-    """Within this context each notice counts the ``kernels``, on a terminal by ``tick(ready, all)``; the last one gives the
-    time of all."""
+    """Within this context notices count the ``kernels``, on a terminal by ``tick(ready, all)``; the last gives the whole time."""
     _running.append(_WarmUp(kernels, tick))
     start = time.perf_counter()
     try:

@@ -102,7 +102,6 @@ def _ask_rules(env: "SnookerEnv") -> None:
     from ..game.pots import pots
     from ..game.referee import Situation, Stroke, judge
     from ..game.snookered import is_snookered
-    from ..game.spotting import spot_colours
 
     frame = Frame.start()
     frame.play(Stroke())
@@ -112,7 +111,6 @@ def _ask_rules(env: "SnookerEnv") -> None:
     settle_table(env.positions, env.on_table, Situation(), Stroke())
     judge(Situation(), Stroke())
     is_snookered(env.positions, env.on_table, REDS_MASK)
-    spot_colours(env.positions, env.on_table, 0)
 
 
 def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:

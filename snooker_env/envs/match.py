@@ -10,13 +10,13 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
-from .._lib.check import choice, refuse
+from .._lib.check import choice
 from .._lib.types import Action, Observation, RenderMode
 from ..game.frame import Frame
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices
+from ..tasks.discrete_actions import Choices, require_choices
 from ..tasks.frames import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Crew
@@ -25,7 +25,7 @@ from .one_table import OneTable, Record
 from .pictures import FPS, MODES, SIZE, Pictures
 from .seats import match_options, match_tables
 
-PLAYERS = ("player_0", "player_1")
+PLAYERS: tuple[str, ...] = ("player_0", "player_1")
 
 
 class MatchEnv(OneTable, AECEnv[str, Any, Any]):
@@ -57,14 +57,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
     tables: Frames
-    possible_agents: list[str]
-    agents: list[str]
-    observation_spaces: dict[str, Any]
-    action_spaces: dict[str, Any]
-    rewards: dict[str, float]
-    terminations: dict[str, bool]
-    truncations: dict[str, bool]
-    infos: dict[str, dict[str, Any]]
 
     def __init__(
         self,
@@ -82,12 +74,9 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []
-        acts = [seat.actions for seat in self.tables.seats]
-        seen = (observation_space_of(self.options, actions) for actions in acts)
-        self.observation_spaces = dict(zip(PLAYERS, seen, strict=True))
-        # each with its own generator
-        spaces = [copy.deepcopy(actions.space) for actions in acts]
-        self.action_spaces = dict(zip(PLAYERS, spaces, strict=True))
+        acts = list(zip(PLAYERS, (seat.actions for seat in self.tables.seats), strict=True))
+        self.observation_spaces = {name: observation_space_of(self.options, its) for name, its in acts}
+        self.action_spaces = {name: copy.deepcopy(its.space) for name, its in acts}  # each with its generator
         self.np_random, _ = seeding.np_random()
         self._selected: str | None = None
         self._record, self._keyed, self._last = Record(full=render_mode is not None), False, None
@@ -140,8 +129,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
-        if not isinstance(self.tables.seats[side].actions, Choices):
-            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
+        require_choices(self.tables.seats[side].actions)
         return self._mask(side, agent == self.agent_selection)
 
     def _mask(self, side, turn):
@@ -168,10 +156,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def _begin(self):
         """Initialise PettingZoo's attributes for the current table; rewards not yet collected become zero."""
         super()._begin()
-        self._last = None
-        self.agents = list(PLAYERS)
-        self.rewards = dict.fromkeys(PLAYERS, 0.0)
-        self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
+        self._last, self.agents = None, list(PLAYERS)
+        self.rewards, self._cumulative_rewards = (dict.fromkeys(PLAYERS, 0.0) for _ in range(2))
         self._account()
 
     def _account(self, striker=None):
@@ -198,12 +184,11 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
         a = self.tables.seats[striker].actions.check(action)
         self._pictures.require_display()
-        crew = Crew(self._record.buffers, self._watch)
         self._record.begin_step()
+        crew = Crew(self._record.buffers, self._watch)
         played = bool(self.tables.turns([np.array([a])] * 2, out, crew)[0])
         self._last = out if played else None
-        self._cumulative_rewards[name] = 0.0
-        gained = float(out.rewards[0])
+        self._cumulative_rewards[name], gained = 0.0, float(out.rewards[0])
         self.rewards = dict(zip(PLAYERS, (gained, 0.0 - gained), strict=True))
         self._account(striker)
         self._accumulate_rewards()

@@ -68,9 +68,8 @@ class MatchVectorEnv(SnookerVectorEnv):
             raise refuse("seats", seats, 'must give both players the same choices with observation="masked"')
         self.single_action_space: spaces.Space[Any] = one if self._alike else spaces.Tuple((one, other))
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, self.num_envs)
-        self.single_observation_space: spaces.Space[Any] = observation_space_of(
-            self.options, self.tables.seats[0].actions
-        )
+        seen = observation_space_of(self.options, self.tables.seats[0].actions)
+        self.single_observation_space: spaces.Space[Any] = seen
         self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, self.num_envs)
 
     _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
@@ -104,7 +103,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         written = tables.output()
         with self._playing():
             tables.turns(checked, written, self._crew)
-        infos = self._infos(written) | {"striker": self.strikers}
+        infos = tables.infos(written.reals, written.counts) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
         return self._arrange(written), rewards, written.terminated, written.truncated, infos
 

@@ -35,8 +35,8 @@ def recorder_asking() -> Any:
 
 
 class PictureSource:
-    """The pictures of one environment: the current one or, for a recorder, first those of the motion. Recorders call
-    ``render()`` once after each step, in a method named ``_capture_frame``, and accept no list: it is called back."""
+    """The pictures of one environment: the current one or, for a recorder, first those of the motion. A recorder calls
+    ``render()`` once after each step, in ``_capture_frame``, and accepts no list: so it is called back."""
 
     def __init__(self) -> None:
         self._current: Any = None

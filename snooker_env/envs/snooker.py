@@ -7,10 +7,10 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import choice, refuse
+from .._lib.check import choice
 from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices
+from ..tasks.discrete_actions import require_choices
 from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
@@ -31,7 +31,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
       and 0.4 R up; the pot, 0 the widest, the further from 0 the narrower, its aim solved. All 0: the widest pot, no spin.
       With ``aim="absolute"``: 0.2 to 7 m/s; offsets up to 0.5 R, in a disc; up to 180 deg anticlockwise from +x; with
       "target" 3 deg left (right: -1) of the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
-      What is up to 1e-6 outside is clipped, as rounding; more is refused. ``action="discrete"``: ``Discrete(540)``
+      Values up to 1e-6 outside are clipped, as rounding; others are refused. ``action="discrete"``: ``Discrete(540)``
       or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
     * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: for the four widest pots chance, log10 of it / 2, cut,
       tolerance, value, place of the ball, direction and distance of the ghost ball, place of the pocket; the cue ball; the
@@ -127,8 +127,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
-        if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
+        require_choices(self.options.rules.actions)
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from .._lib.check import choice, integer, refuse
 from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices
+from ..tasks.discrete_actions import require_choices
 from ..tasks.options import NEVER, Options
 from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
@@ -80,9 +80,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     metadata: dict[str, Any] = SnookerEnv.metadata
 
-    num_envs: int
     options: Options
-    autoreset_mode: AutoresetMode
     tables: Tables
 
     def __init__(
@@ -118,9 +116,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * n
         self._generator_seeds = [-1] * n
-        self._keyed = np.zeros(n, np.bool_)  # has the table's stream a key?
-        self._begun = np.zeros(n, np.bool_)
-        self._done = np.zeros(n, np.bool_)
+        # has the table's stream a key, has it an episode, and has that ended?
+        self._keyed, self._begun, self._done = np.zeros((3, n), np.bool_)
         self._recent: list[list[Played]] = [[] for _ in range(n)]  # of the last step or reset, if shown
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
@@ -132,10 +129,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # Gymnasium's interface
 
     def reset(
-        self,
-        *,
-        seed: int | list[int | None] | None = None,
-        options: dict[str, Any] | None = None,
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin new episodes on all tables, or on some; ``options``: see the class.
 
@@ -191,7 +185,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         with self._playing():
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         done = written.terminated | written.truncated
-        infos = self._infos(written)
+        infos = self.tables.infos(written.reals, written.counts)
         if same_step:
             self._done = np.zeros(self.num_envs, np.bool_)
             if done.any():
@@ -202,8 +196,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
-        if not isinstance(self.options.rules.actions, Choices):
-            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
+        require_choices(self.options.rules.actions)
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
@@ -281,9 +274,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _saw(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
         self._recent[k].append(self.tables.record(k, buffers, j))
-
-    def _infos(self, written):
-        return self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
 
     def _arrange(self, written):
         """The observations in the environment's kind."""

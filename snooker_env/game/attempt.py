@@ -1,12 +1,11 @@
 """How near did a snookered striker's cue ball come to a ball on? Exact, for ``miss="attempt"``.
 
 S3 R14(a) demands the striker's best endeavour, which a referee judges. The rule declared here: the cue ball
-passes within ``ATTEMPT_GAP`` of a ball on, all still at rest, before its first contact with any ball, or
-before it comes to rest. Where no ball on can be hit (``shut_in``) it counts where it would have passed without
-the balls that are not on, near a ball on that it was played toward.
+passes within ``ATTEMPT_GAP`` of a ball on, all still at rest, before its first contact or before it comes to
+rest. If no ball on can be hit (``shut_in``), the balls that are not on are left out of that test.
 
-It moves on pieces x + v t + a t^2 / 2. The derivative of its squared distance from a ball is a cubic, monotone
-between its extremes, so bisection finds every minimum."""
+The cue ball moves on pieces x + v t + a t^2 / 2. The derivative of its squared distance from a ball is a cubic,
+monotone between its extremes: bisection finds every minimum."""
 
 import numpy as np
 

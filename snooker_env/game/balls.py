@@ -172,9 +172,8 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
 
 def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
-    """The most points that the striker can still score with these balls, without any from fouls: 8 for each
-    red, the value of each colour, 7 if any colour is on. A free ball, which must be another ball than the
-    one on, adds 8 with a red on (one more red), else the value of the colour on."""
+    """The most points that the striker can still score: 8 for each red, the value of each colour, 7 if any colour is on.
+    A free ball adds 8 with a red on (one more red), else the value of the colour on."""
     points, colours = 0, 0
     for i in range(1, N_BALLS):
         if (on_table >> i) & 1:

@@ -1,10 +1,8 @@
-"""Where do stored tables come from? From banks, files that commands make by simulated play.
+"""Where do stored tables come from? From banks, which ``python -m benchmarks.make_tables NAME`` makes by simulated play.
 
-* ``opened.npz``, by ``python -m benchmarks.make_tables opened``: a break-off and further hard strokes until the pack is
-  spread, all 22 balls and some pot on a red.
-* ``safety.npz``, by ``python -m benchmarks.make_tables safety``: positions of frames in which a red is on, but no pot.
-* ``escape.npz``, by ``python -m benchmarks.make_tables escape``: snookers from which constant choices often fail.
-"""
+* ``opened.npz``: a break-off and further hard strokes until the pack is spread; all 22 balls and some pot on a red.
+* ``safety.npz``: positions of frames in which a red is on, but no pot.
+* ``escape.npz``: snookers from which constant choices often fail."""
 
 from functools import cache, lru_cache
 from pathlib import Path

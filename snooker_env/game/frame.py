@@ -5,11 +5,9 @@
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that, and
-unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError.
-
-The miss rules, and what is left out, stand in docs/environment/rules.md. Stalemates (``restart`` carries one out) and the
-lot for a re-spotted black are passed in."""
+A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that row, and
+unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError. The caller decides on
+stalemates (``restart``) and the lot for a re-spotted black; docs/environment/rules.md has the miss rules."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -35,11 +33,6 @@ SETTLED |= dict.fromkeys(("free_ball", "miss_called", "warned", "anywhere"), Fal
 """The fields of a frame that is over."""
 REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
 """The fields that are restored with a position that is replaced."""
-
-
-def is_plain(value: object, high: int) -> bool:
-    """Whether it is an int in [0, high]: a quick test that nearly always spares the full check."""
-    return type(value) is int and 0 <= value <= high
 
 
 def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
@@ -239,16 +232,13 @@ class Frame:
             raise refuse("miss", self.miss, allowed)
         most = (("break_points", MOST_BREAK), ("failures", 2), ("misses", MOST_MISSES), ("clock", MOST_CLOCK))
         for name, high in (("striker", 1), ("breaker", 1), *most):
-            if not is_plain(getattr(self, name), high):
-                _set(self, name, integer(name, getattr(self, name), 0, high))
+            _set(self, name, integer(name, getattr(self, name), 0, high))
         for name in _TRUTHS:
-            if type(getattr(self, name)) is not bool:
-                _set(self, name, truth(name, getattr(self, name)))
+            _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
-        if not all(is_plain(points, MOST_POINTS) for points in self.scores):
-            scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
-            _set(self, "scores", tuple(scores))
+        scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
+        _set(self, "scores", tuple(scores))
         _set(self, "on_table", _object_balls(self.on_table))
         _set(self, "rack", _object_balls(self.rack, "rack"))
         if self.saved is not None and not isinstance(self.saved, Saved):
@@ -274,10 +264,8 @@ class Frame:
         balls = rule_set(rules).on_table
         if on_table is not None:
             balls = integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
-        on = BallOn(next_on(balls))
-        return cls(
-            striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls, rack=balls, ball_on=on
-        )
+        game = {"rules": rules, "miss": miss, "on_table": balls, "rack": balls}
+        return cls(striker=breaker, breaker=breaker, ball_on=BallOn(next_on(balls)), **game)
 
     @property
     def rule_set(self) -> RuleSet:
@@ -329,10 +317,11 @@ class Frame:
         time_to_play: int = 0,
         duration: int = 0,
     ) -> tuple["Frame", Verdict]:
-        """One stroke: the next frame and the referee's ``Verdict``. ``clear_path``, ``full_ball_path``, ``attempt``: for the
-        miss rules, of ``paths.best_paths`` before it, and whether the cue ball came near a ball on (``attempt``);
-        ``layout``: see ``Saved``. ``time_to_play``, ``duration``: for a clock [ms], from the rest of the balls to this
-        stroke, and to the next rest: one later than ``shot_clock`` is read as ``Stroke(late=True)``."""
+        """One stroke: the next frame and the referee's ``Verdict``.
+
+        ``clear_path``, ``full_ball_path`` (``paths.best_paths`` before the stroke) and ``attempt`` (whether the cue ball came near
+        a ball on) are for the miss rules; ``layout``: see ``Saved``. For a clock [ms]: ``time_to_play`` before the stroke,
+        ``duration`` after it; a stroke later than ``shot_clock`` counts as ``Stroke(late=True)``."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)
@@ -356,9 +345,9 @@ class Frame:
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
 
-        "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
-        offender plays it, without. "replace", after a miss: the offender plays from ``saved``. "anywhere",
-        after the last miss in succession: the opponent plays from anywhere, without a free ball."""
+        "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the offender plays it,
+        without. "replace", after a miss: the offender plays from ``saved``. "anywhere", after the last miss in
+        succession: the opponent plays from anywhere, without a free ball."""
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:
@@ -436,19 +425,14 @@ def _pack(frame):
 
 
 def _unpack(row, rules, miss, layout):
-    """The ``Frame`` of a row; ``layout``: what is stored with it, if anything is."""
+    """The ``Frame`` of a row; ``layout``: the one stored with it, if any."""
     at = row.tolist()
     saved = None
     if at[columns.SAVED]:
         placed, kept = at[columns.SAVED_IN_HAND], layout if at[columns.SAVED_LAYOUT] else None
-        saved = Saved(
-            on_table=at[columns.SAVED_ON_TABLE],
-            ball_on=BallOn(at[columns.SAVED_BALL_ON]),
-            in_hand=placed > 0,
-            free_ball=bool(at[columns.SAVED_FREE_BALL]),
-            anywhere=placed == 2,
-            layout=kept,
-        )
+        balls = {"on_table": at[columns.SAVED_ON_TABLE], "ball_on": BallOn(at[columns.SAVED_BALL_ON])}
+        cue = {"in_hand": placed > 0, "anywhere": placed == 2}
+        saved = Saved(**balls, **cue, free_ball=bool(at[columns.SAVED_FREE_BALL]), layout=kept)
     fields = dict(zip(_INTEGERS, _integers(at), strict=True))
     fields |= zip(_FLAGS, map(bool, _flags(at)), strict=True)
     fields |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}

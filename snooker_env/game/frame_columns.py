@@ -52,15 +52,13 @@ RACK = 32  # mask of the object balls that the frame began with
 COLUMNS = 33
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)  # Phases, in the order of ``frame.PHASES``
-(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(
-    4
-)  # decisions after a foul, in the order of ``frame.CHOICES``
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)  # decisions after a foul: ``frame.CHOICES``
 (NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)  # miss rules, in the order of ``frame.MISS_RULES``
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
 
 class Conditions(NamedTuple):
-    """What is the same for all frames of an environment."""
+    """The constants of all frames of an environment."""
 
     rules: int  # code of the rule set (``rule_sets``)
     miss: int  # code of the miss rule
@@ -127,7 +125,7 @@ def needs_snookers(row, player):
 
 @kernel
 def _rules_miss_out(row):
-    """Whether the scores rule a miss out: a player needs penalty points, or the lead is what is left."""
+    """Whether the scores rule a miss out: a player needs penalty points, or the lead equals the points left."""
     level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     return level or needs_snookers(row, 0) or needs_snookers(row, 1)
 

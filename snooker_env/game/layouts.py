@@ -19,8 +19,7 @@ from .snookered import NO_JAWS, snookered_from
 
 GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
 """Least gaps [m] of a ball placed at random to balls, to cushions, and of its centre to pockets."""
-STORED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
-"""Kinds of layouts, for the kernels."""
+STORED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)  # kinds of layouts, for the kernels
 
 
 @kernel

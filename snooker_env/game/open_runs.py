@@ -1,5 +1,5 @@
-"""Which balls on can run straight to which pockets, wherever the cue ball lies? Found once, and asked from many places of the
-cue ball: the pots of each are then those of ``find_pots``, bit for bit, at a fraction of its time."""
+"""Which balls on can run straight to which pockets, wherever the cue ball lies? The pots from each place of the cue ball
+are then those of ``find_pots``, bit for bit, at a fraction of its time."""
 
 from math import sqrt
 

@@ -1,20 +1,18 @@
 """Was there a clear path to a ball on? The two tests of the rule of the foul and a miss, as kernels.
 
-*Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other
-balls on never obstruct. *Full ball* (S3 R14): it can roll straight onto the centre of some ball on. For reds
-this is "a complete diameter of any Red that is not obstructed by a ball or balls not on": a strip as wide as
-a ball, where only other reds do not matter. A colour's strip must be free of all balls, also where several
-could be on: the striker nominates one.
+*Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other balls
+on never obstruct. *Full ball* (S3 R14): it can roll straight onto the centre of some ball on, through a strip as
+wide as a ball. Other reds do not obstruct the strip to a red; any ball obstructs the strip to a colour, as the
+striker nominates one.
 
-A path ends at a cushion, nose or jaw (only the test for a snooker leaves cushions out). In hand a path counts
-that is clear from any place where the cue ball may stand (R14(a), and S2 R17 for a snooker). Tried are the
-places of ``in_hand``; an opening that falls between them is in the striker's favour."""
+A path ends at a cushion, nose or jaw (only the test for a snooker leaves cushions out). In hand a path counts if it is
+clear from some place of ``in_hand`` (R14(a), and S2 R17 for a snooker); an opening between these favours the striker."""
 
 import numpy as np
 
 from .._lib.jit import entry, kernel
+from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, REDS_MASK, REFEREE_TOUCH
-from .first_contact import meets
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
 from .snookered import SLACK, segment_distance
 from .spotting import touches
@@ -23,6 +21,27 @@ WINDOW = 1e-9  # a narrower opening does not count [rad]: it is rounding
 # columns of ``noses`` and ``jaws``, as of ``physics.Table``
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
 ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
+
+
+@kernel
+def meets(bx, by, ux, uy, radius):
+    """How far it rolls from the origin along the unit vector u until it meets a ball at b [m], or inf."""
+    along, across = bx * ux + by * uy, bx * uy - by * ux
+    if along <= 0.0 or abs(across) >= 2.0 * radius:
+        return np.inf
+    return along - np.sqrt(4.0 * radius * radius - across * across)
+
+
+@kernel
+def find_first_ball(positions, on_table, x, y, ux, uy, far):
+    """The ball met first from (x, y) along the unit vector u, up to the distance ``far`` [m]; 0 if none."""
+    ball = 0
+    for i in range(1, N_BALLS):
+        if on_table[i]:
+            run = meets(positions[i, 0] - x, positions[i, 1] - y, ux, uy, BALL_RADIUS)
+            if run < far:
+                far, ball = run, i
+    return ball
 
 
 @kernel
@@ -126,8 +145,8 @@ def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
 
 @entry  # it makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, noses, jaws, radius):
-    """Whether a straight path leads to any part of a ball on (mask ``on``). It can open or close only at
-    tangents to balls and jaws, ends of cushions, and where two are met at once: midpoints tell."""
+    """Whether a straight path leads to any part of a ball on (mask ``on``). A path opens or closes only at tangents to balls
+    and jaws, at ends of cushions, and where two are met at once: the midpoints between these are tested."""
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
@@ -160,9 +179,7 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
                     n += 1
         n = _cushion_edges(edges, n, (cx, cy), (tx + cx, ty + cy), towards, noses, jaws, radius)
         inside = 0
-        for k in range(
-            n
-        ):  # into (-pi, pi]: so the target's window is one interval about 0; those in it, in order
+        for k in range(n):  # into (-pi, pi]: the target's window is one interval; the edges in it, in order
             edge = edges[k] - 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
             if -half <= edge <= half:
                 j = inside
@@ -174,17 +191,16 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         for k in range(inside - 1):
             low, high = edges[k], edges[k + 1]
             angle = towards + 0.5 * (low + high)
-            if high - low > WINDOW and _open_direction(
-                positions, on_table, on, target, angle, noses, jaws, radius
-            ):
+            wide = high - low > WINDOW
+            if wide and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
                 return True
     return False
 
 
 @entry(what="the paths of the miss rule", seconds=2)
 def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
-    """Both tests: (any part, full ball). ``in_hand``: 0 from where it lies, 1 from the D, 2 from anywhere on
-    the bed; its place in ``positions`` is tried first, then others until one has a full-ball path."""
+    """Both tests: (any part, full ball). ``in_hand``: 0 from where the cue ball lies, 1 from the D, 2 from anywhere on the bed;
+    its place in ``positions`` is tried first, then others until one has a full-ball path."""
     if on_table[0]:
         full = full_ball_path(positions, on_table, on, noses, jaws, radius)
         clear = full or clear_path(positions, on_table, on, noses, jaws, radius)

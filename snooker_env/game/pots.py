@@ -115,33 +115,26 @@ def pot_at(positions, on_table, ball, k, d, least):
     gx, gy = bx - d * dx, by - d * dy
     px, py = gx - cx, gy - cy
     path = sqrt(px * px + py * py)
-    if path < 1e-9:
-        return 0.0, 0.0, 0.0, 0.0
-    # the ghost ball would be in the cushion
-    if abs(gx) > _WIDTH - 0.5 * d + 1e-9 or abs(gy) > _LENGTH - 0.5 * d + 1e-9:
+    # or the ghost ball would be in the cushion
+    if path < 1e-9 or abs(gx) > _WIDTH - 0.5 * d + 1e-9 or abs(gy) > _LENGTH - 0.5 * d + 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     cos_cut = (px * dx + py * dy) / path
-    if cos_cut < 0.05:  # a cut of more than 87 degrees
-        return 0.0, 0.0, 0.0, 0.0
     of_width = d * cos_cut / (2.0 * run * path)
-    if (_MIDDLE_WIDEST if middle else _CORNER_WIDEST) * of_width <= least:
+    # no cut of more than 87 degrees
+    if cos_cut < 0.05 or (_MIDDLE_WIDEST if middle else _CORNER_WIDEST) * of_width <= least:
         return 0.0, 0.0, 0.0, 0.0
     width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
-    tolerance = width * of_width
-    if width <= 0.0 or tolerance <= least:
-        return 0.0, 0.0, 0.0, 0.0
-    pocket = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
-    if not clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d):
-        return 0.0, 0.0, 0.0, 0.0
-    if not clear_segment(positions, on_table, (cx, cy), (gx, gy), ball, 0, d * (1.0 - 1e-9)):
+    tolerance, pocket = width * of_width, (POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y])
+    is_open = width > 0.0 and tolerance > least
+    is_open = is_open and clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d)
+    if not (is_open and clear_segment(positions, on_table, (cx, cy), (gx, gy), ball, 0, d * (1.0 - 1e-9))):
         return 0.0, 0.0, 0.0, 0.0
     return tolerance, gx, gy, cos_cut
 
 
 @kernel
 def insert_pot(pots, count, ball, pocket, ghost, cos_cut, tolerance):
-    """Insert a pot into the first ``count`` rows of ``pots``, widest first, in place of the last if all are full; returns
-    the number of rows then."""
+    """Insert a pot into the first ``count`` rows of ``pots``, widest first, over the last if all are full -> the new number."""
     at = min(count, pots.shape[0] - 1)
     while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
         for c in range(POT_COLUMNS):
@@ -202,14 +195,12 @@ def count_pots(positions, on_table, on, radius, most):
 
 
 @entry
-def _pots(positions, on_table, on, radius, pots):
-    return find_pots(positions, on_table, on, radius, pots)
+def _pots(positions, on_table, on, pots):
+    return find_pots(positions, on_table, on, BALL_RADIUS, pots)
 
 
-def pots(
-    positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS
-) -> Floats:
+def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32) -> Floats:
     """Direct pots (k, POT_COLUMNS) of the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
     placed, present = np.ascontiguousarray(positions, np.float64), np.ascontiguousarray(on_table, np.bool_)
-    return out[: _pots(placed, present, int(on), radius, out)].copy()
+    return out[: _pots(placed, present, int(on), out)].copy()

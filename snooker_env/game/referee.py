@@ -148,6 +148,6 @@ def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:
 
 
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
-    """The ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function; ValueError if they do not fit
-    together (a ball potted that was not on the table, a nomination not allowed)."""
+    """The ``Verdict`` on a ``Stroke`` in a ``Situation``; ValueError if they do not fit together (a ball potted that was not on
+    the table, a nomination not allowed)."""
     return verdict_of(ruling_of(situation, stroke))

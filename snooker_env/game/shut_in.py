@@ -1,9 +1,8 @@
 """Is it impossible to hit a ball on, because balls that are not on shut the cue ball in? Exact, in the plane.
 
-The cue ball passes between two balls whose centres are 4 R apart, and between a ball and a cushion 3 R apart. So balls
-that are not on and nearer than that, to each other or to a cushion, form walls. It is shut in where walls part it from
-every place at which it would touch a ball on: then no stroke hits one first, however it curves and over whatever
-cushions, but by a jump, which is a foul.
+The cue ball passes between two balls whose centres are 4 R apart, and between a ball and a cushion 3 R apart. Balls
+that are not on and nearer than that form walls. The cue ball is shut in if walls part it from every place at which it
+would touch a ball on: then no stroke but a jump, which is a foul, hits one first.
 
 Two places are parted if, along some closed chain of walls, the directions from both turn by different amounts: by a
 whole turn about the one and not about the other. All cushions count as one wall."""

@@ -1,12 +1,10 @@
 """Is the cue ball snookered, and by which ball? Straight lines past circles, as kernels.
 
-A ball on can be struck at an extreme edge if the cue ball's centre can move along the line that passes the
-ball's centre at 2 R up to the grazing contact, with no ball not on nearer than 2 R. The cue ball is not
-snookered if it can strike one ball on so at both edges, or touches it. A cushion does not snooker: where the
-curved face of a jaw obstructs an edge and is nearer than any ball not on that does, it counts as open.
-
-In hand the places of ``in_hand.PLACES_IN_D`` are tested, 5 mm apart, then places right beside each ball,
-where most narrow openings are; one narrower than 5 mm and away from every ball may be missed."""
+The cue ball can strike an extreme edge of a ball on if its centre can move along the line that passes the ball's
+centre at 2 R up to the grazing contact, with no ball not on nearer than 2 R. It is not snookered if it touches a
+ball on or can strike one at both edges. A cushion does not snooker: an edge that the curved face of a jaw obstructs,
+nearer than any ball not on does, counts as open. In hand the places of ``in_hand.PLACES_IN_D`` are tested, 5 mm
+apart, then places right beside each ball; an opening narrower than 5 mm and away from every ball may be missed."""
 
 import numpy as np
 
@@ -20,8 +18,7 @@ from .spotting import touches
 
 BESIDE, SLACK = 360, 1e-9
 """Number of places beside a ball that are tested; nearer than 2 R by more than this [m] a ball obstructs."""
-NO_JAWS = np.empty((0, 3))
-"""No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
+NO_JAWS = np.empty((0, 3))  # no curved cushion faces; else rows are their circles (x, y, radius) [m]
 
 
 @kernel

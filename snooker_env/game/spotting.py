@@ -7,10 +7,8 @@ black). Of several colours, those whose own spot is free go first, then the high
 
 import numpy as np
 
-from .._lib.check import integer, refuse
-from .._lib.jit import entry, kernel
-from .._lib.types import Bools, Flags, Floats, Vectors
-from ..geometry import BALL_RADIUS, HALF_LENGTH
+from .._lib.jit import kernel
+from ..geometry import HALF_LENGTH
 from . import balls
 
 
@@ -33,8 +31,8 @@ def has_no_room(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
-    other: it moves to the far end of each interval that a ball bars, until none does, which is exact."""
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other. Exact: y moves
+    to the far end of each interval that a ball bars, until none does."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:
@@ -84,19 +82,3 @@ def spot(positions, on_table, mask, radius):
             x, y = place_colour(positions, on_table, ball, radius)
             positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
-
-
-@entry
-def _spot(positions, on_table, mask, radius):
-    spot(positions, on_table, mask, radius)
-
-
-def spot_colours(
-    positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
-) -> tuple[Floats, Bools]:
-    """New ``positions`` (22, 2) [m] and ``on_table`` (22,), ``mask`` spotted; or ValueError."""
-    if integer("mask", mask, 0, balls.ALL_MASK) & ~balls.COLOURS_MASK:
-        raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
-    placed, present = balls.check_table(positions, on_table)
-    _spot(placed, present, mask, float(radius))
-    return placed, present

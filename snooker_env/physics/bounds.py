@@ -57,12 +57,7 @@ def narrowest(noses: Floats) -> tuple[float, int, int]:
     least = (np.inf, -1, -1)
     for a, (axis, side, level, low, high) in enumerate(noses):
         for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
-            if (
-                a < b
-                and axis == other_axis
-                and side != other_side
-                and low <= other_high
-                and other_low <= high
-            ):
+            faces = a < b and axis == other_axis and side != other_side
+            if faces and low <= other_high and other_low <= high:
                 least = min(least, (float(level + other_level), a, b))
     return least

@@ -14,16 +14,8 @@ RANGES: dict[str, tuple[float, float]] = {
     "e_c": (0.95, 0.98),
     "end_mass_ratio": (25.0, 30.0),
 }
-"""The lowest and highest value of each constant that is drawn. All are fields of ``Physics`` but
-"mu_bb_scale", the factor of its friction between balls at every slip speed: dirt and polish.
-
-* mu_s: measured [MJP14 2.4.2]. mu_r: 0.0128 is a deceleration of 0.126 m/s^2 [MJP14]; 0.0100 is what a ball
-  off a ramp needs on a heated table with new cloth (``python -m benchmarks.fit_cushion``).
-* spin_decel: 22 rad/s^2 [MJP14 eq. 21]; for pool balls 5 to 15 are given; the lower end is our choice.
-* e_b: about the 0.94 of the preset "match". mu_bb_scale: 30 % either way covers the throws measured with clean
-  and with dirty balls about one law [Marlow]; the share is our choice.
-* mu_c and e_c: about 0.14 and 0.98 [MJP10], which were fitted on one cushion; the widths are our choice.
-* end_mass_ratio: 30 for common cues [TP A.31]; 25 for one that is heavier at the tip, our choice."""
+"""The lowest and highest value of each constant that is drawn; docs/environment/conditions.md has the sources. All are
+fields of ``Physics`` but "mu_bb_scale", the factor of its friction between balls at every slip speed."""
 NAMES = tuple(RANGES)
 COLUMNS = len(NAMES)
 LOW, HIGH = np.array(list(RANGES.values())).T.copy()

@@ -30,11 +30,9 @@ from .._lib.types import Floats
 from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .cue import MAX_ELEVATION, squirt
 
-TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
-"""Radii of the cue at its ends, and its length [m]."""
+TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45  # radii of the cue at its ends, and its length [m]
 TAPER = (BUTT - TIP) / LENGTH
-RAIL = 0.038
-"""Height of a rail above the bed [m]."""
+RAIL = 0.038  # height of a rail above the bed [m]
 STEEPEST = radians(45.0)
 """The highest elevation of a stroke that keeps its tip [rad]. Above it a player stands over the ball, the bridge in
 the air: a masse, which nobody plays for position. Our choice; players' limits are not published."""
@@ -47,27 +45,21 @@ FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
 OVER_NOTHING, OVER_RAIL = -1, 0
 """What sets the least elevation: nothing, or a rail; else the id of a ball, which is never ball 0."""
 
-_ABOVE = 1e-9
-"""The edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]."""
-_TINY = 1e-12
-"""Keeps a cue that lies along a rail from a quotient of zeros."""
-_PASSES = 3
-"""Over the balls, at most."""
-_HALVINGS = 40
-"""Bisections of a tip's way, to 1e-12 R; few strokes need them."""
+_ABOVE = 1e-9  # the edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]
+_TINY = 1e-12  # keeps a cue that lies along a rail from a quotient of zeros
+_PASSES = 3  # over the balls, at most
+_HALVINGS = 40  # bisections of a tip's way, to 1e-12 R; few strokes need them
 _TRIALS, _SAME = 8, 1e-13
 """Newton's steps and fixed points gain two digits and more each; below such a step they stay [rad]."""
 
 
-NO_RAILS = np.empty(0)
-"""The rails of a free cue, which nothing is in the way of."""
+NO_RAILS = np.empty(0)  # the rails of a free cue, which nothing is in the way of
 NO_RAILS.setflags(write=False)
 
 
 def rails_of(noses: Floats, falls: Floats) -> Floats:
-    """The rails behind the noses of a table, for the kernels: ``EDGE`` numbers for each nose, those of one side
-    together. Behind a pocket a rail begins where the fall ends that reaches farthest behind the noses of that side.
-    Noses (k, 5) and falls (p, 3): as of ``Table``."""
+    """The rails behind the noses of a table: ``EDGE`` numbers for each nose, those of one side together. Behind a pocket a
+    rail begins where the fall ends that reaches farthest behind the noses of that side."""
     rows = []
     for nose in sorted(noses.tolist()):
         axis, side, level = int(nose[NOSE_AXIS]), nose[NOSE_SIDE], nose[NOSE_LEVEL]
@@ -118,8 +110,7 @@ def _over_rail(D, sin_phi, c, side, top, q, R):
 
 @kernel
 def _over_ball(b, beside, top, q, se, ce, R):
-    """Sine and cosine of the least elevation, from (``se``, ``ce``) on, that clears a ball b behind and ``beside``
-    the tip [m]."""
+    """The least elevation (sine, cosine), from (``se``, ``ce``) on, over a ball b behind and ``beside`` the tip [m]."""
     first_se, first_ce, cosine, far = se, ce, sqrt(1.0 - TAPER * TAPER), 0.0
     for trial in range(_TRIALS):
         far = (R + TIP + TAPER * (b * ce - R * q)) / cosine
@@ -139,8 +130,7 @@ def _over_ball(b, beside, top, q, se, ce, R):
 
 @kernel
 def _over_rails(ax, ay, side, top, q, x, y, rails, R):
-    """Sine and cosine of the least elevation over the rails, and how far behind the cue ball, along the cue, the edge
-    is that sets it [m]."""
+    """The least elevation over the rails (sine, cosine), and how far behind the cue ball the edge is that sets it [m]."""
     # the cue crosses one end rail and one side rail at most, the nearest edge of each
     across_x, across_y, c_x, c_y = inf, inf, 0.0, 0.0
     for m in range(0, rails.shape[0], EDGE):
@@ -173,8 +163,8 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
 
 @kernel
 def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue that points along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a
-    ball), and how far that is behind the cue ball, along the cue [m]."""
+    """``least_elevation`` of a cue along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a ball), and how far that
+    is behind the cue ball, along the cue [m]."""
     x, y, q = positions[0, 0], positions[0, 1], sqrt(max(1.0 - side * side - top * top, 0.0))
     own, its = (sin(elevation), cos(elevation)) if elevation != 0.0 else (0.0, 1.0)
     se, ce, behind = _over_rails(ax, ay, side, top, q, x, y, rails, R)
@@ -199,25 +189,20 @@ def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
 
 
 @kernel
-def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue that points along (ax, ay)."""
-    return _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
-
-
-@kernel
 def least_elevation(stroke, positions, on_table, rails, R):
-    """The least elevation of the cue [rad] at which a stroke of ball 0 can be played: its own, or a higher one.
-
-    ``stroke``: (side, top, aim, elevation), aim the direction of the cue [rad]; ``rails``: rows of ``EDGE``
-    numbers, one after the other. pi/2: it cannot be played.
-    """
+    """The least elevation of the cue [rad] for a stroke of ball 0: its own or a higher one; pi/2: it cannot be played.
+    ``stroke``: (side, top, aim of the cue, elevation); ``rails``: of ``rails_of``."""
     side, top, aim, elevation = stroke
-    return _least(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)
+    return _least_over(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)[0]
 
 
 @kernel
-def _fits(side, top, ax, ay, positions, on_table, rails, R):
-    return _least(side, top, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
+def _tip_at(part, straight, side, top, highest, max_offset):
+    """The tip at a part of its way: ``straight`` up, or along the miscue limit."""
+    if straight:
+        return side, top + part * (highest - top)
+    across = side * (1.0 - part)
+    return across, sqrt(max(max_offset * max_offset - across * across, 0.0))
 
 
 @kernel
@@ -225,21 +210,13 @@ def _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset):
     """The tip nearest to (side, top), on a way up to the miscue limit and along that to the top, that fits."""
     highest = sqrt(max(max_offset * max_offset - side * side, 0.0))
     low, high = 0.0, 1.0
-    straight = _fits(side, highest, ax, ay, positions, on_table, rails, R)
+    straight = _least_over(side, highest, ax, ay, 0.0, positions, on_table, rails, R)[0] <= STEEPEST
     for _ in range(_HALVINGS):
         part = 0.5 * (low + high)
-        across = side if straight else side * (1.0 - part)
-        up = (
-            top + part * (highest - top)
-            if straight
-            else sqrt(max(max_offset * max_offset - across * across, 0.0))
-        )
-        fits = _fits(across, up, ax, ay, positions, on_table, rails, R)
+        across, up = _tip_at(part, straight, side, top, highest, max_offset)
+        fits = _least_over(across, up, ax, ay, 0.0, positions, on_table, rails, R)[0] <= STEEPEST
         low, high = (low, part) if fits else (part, high)
-    if straight:
-        return side, top + high * (highest - top)
-    across = side * (1.0 - high)
-    return across, sqrt(max(max_offset * max_offset - across * across, 0.0))
+    return _tip_at(high, straight, side, top, highest, max_offset)
 
 
 @kernel
@@ -247,19 +224,17 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     """A stroke (speed, side, top, aim, elevation) as the cue can play it, and what was done: ``FREE``, or a sum of
     ``RAISED``, ``MOVED``, ``UNPLAYABLE``.
 
-    The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along
-    the miscue limit at last; where that does not help, the stroke cannot be played, but for a cue that nearly
-    stands. A cue without rails is free.
-    """
+    The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along the
+    miscue limit at last; if that does not help, only a cue that nearly stands can play. A cue without rails is free."""
     if rails.shape[0] == 0:
         return stroke, FREE
     speed, side, top, aim, elevation = stroke
     ax, ay, done = cos(aim), sin(aim), FREE
-    least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
+    least = _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
     if least > max(STEEPEST, elevation):
         done = MOVED
         side, top = _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset)
-        least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
+        least = _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R)[0]
         if least > max(STEEPEST, elevation):
             done |= UNPLAYABLE
     if least > elevation:
@@ -269,8 +244,8 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
 
 @entry
 def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_ratio):
-    """``in_room`` of a stroke whose aim is where the ball leaves the tip, not the cue's; and what the cue passes
-    over, as of ``_least_over``: what raised it, or moved its tip."""
+    """``in_room`` of a stroke whose aim is where the ball leaves the tip; and what raised the cue or moved its tip, as of
+    ``_least_over``."""
     speed, side, top, aim, elevation = stroke
     stroke = (speed, side, top, aim - squirt(side, end_mass_ratio), elevation)
     played, done = in_room(stroke, positions, on_table, rails, R, max_offset)

@@ -1,8 +1,6 @@
 """How does a whole shot run? Predict, take the earliest event, resolve it, predict its balls anew.
 
-A ball's predictions hold while no event changes its motion. Ties: by (time, kind, ball, partner). The loop
-allocates nothing.
-"""
+A ball's predictions hold until an event changes its motion. Ties: by (time, kind, ball, partner)."""
 
 from math import inf, sqrt
 
@@ -35,6 +33,7 @@ from .columns import (
 from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
+from .flight import SETTLE
 from .impact import free
 from .impact.contact import collide_balls, collide_cushion, collide_from_above
 from .impact.polynomial import WORK
@@ -42,25 +41,21 @@ from .meetings import energy_loss, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
-_LIFTS = -1
-"""Status of a run without flight that has stopped where a ball would fly."""
-_LATEST = 1.7e308
-"""Every time of a meeting is below."""
+_LIFTS = -1  # status of a run without flight that has stopped where a ball would fly
+_LATEST = 1.7e308  # every time of a meeting is below
 
 
 @kernel
 def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
-    """Ball i = (r, v, w) met a ball at time t: write its next phase, on the bed or over a pocket. ``way``: the unit vector to
-    that ball, which has now the velocity ``other``.
-
-    Over a pocket a path is its mean line. Where edge and jaw hold a ball, the line may go back into the other ball, and they
-    meet again at once: without end, if such a ball were not pressed over the edge, and lost.
-    """
+    """Ball i = (r, v, w) met a ball at time t: write its next phase. ``way``: the unit vector to that ball, which now
+    has the velocity ``other``."""
     (motion, state, falls), (r, v, w) = paths, ball
     if state[i] == FALLING:
         at, velocity = (r[0], r[1], falls[i, pocket.Z0]), (v[0], v[1], falls[i, pocket.U0])
         at_once = motion[i, T0] == t
         pocket.next_leg(paths, i, t, at, velocity, w, boundaries, phys)
+        # A leg is its mean line, which may lead back into the other ball where edge and jaw hold this one. The two
+        # would meet again without end: so this ball is pressed over the edge, and lost.
         if at_once and (motion[i, VX] - other[0]) * way[0] + (motion[i, VY] - other[1]) * way[1] > 0.0:
             pocket.lose(paths, i, t, at, velocity, w, phys)
     else:
@@ -69,8 +64,8 @@ def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
 
 @kernel
 def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
-    """Two balls on the bed, or one over a pocket, have met, and balls fly: one is lifted, the other pressed, which gives
-    back no more than the impact has lost. ``before``: v1, w1, v2, w2."""
+    """The impact of two balls, ``before`` it v1, w1, v2, w2, lifts one and presses the other into the bed. The bed gives
+    back no more than the impact has lost."""
     motion, state, _falls = paths
     impulse = max(ball_i[1][2], ball_j[1][2])
     if impulse > 0.0:
@@ -78,10 +73,8 @@ def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
         impulse = min(impulse, sqrt(2.0 * energy_loss(before, after, phys[P_R])))
     (xi, yi), (xj, yj) = ball_i[0], ball_j[0]
     nx, ny = (xj - xi) / (2.0 * phys[P_R]), (yj - yi) / (2.0 * phys[P_R])
-    for k, (r, v, w), way, other in (
-        (i, ball_i, (nx, ny), ball_j[1]),
-        (j, ball_j, (-nx, -ny), ball_i[1]),
-    ):
+    both = (i, ball_i, (nx, ny), ball_j[1]), (j, ball_j, (-nx, -ny), ball_i[1])
+    for k, (r, v, w), way, other in both:
         if state[k] == FALLING:
             _begin_again(paths, k, t, (r, v, w), way, other, boundaries, phys)
         elif v[2] > 0.0:
@@ -109,10 +102,9 @@ def _meet_in_air(paths, i, j, t, law, boundaries, series):
         zj, uj = 0.0, 0.0
     nx, ny, nz = x2 - x1, y2 - y1, zj - zi
     d = sqrt(nx * nx + ny * ny + nz * nz)
-    lies = other != AIR and other != FALLING
-    a, wa, b, wb, press, solved = meet_in_air(
-        (v1[0], v1[1], ui), w1, (v2[0], v2[1], uj), w2, (nx / d, ny / d, nz / d), lies, law, series
-    )
+    lies, normal = other != AIR and other != FALLING, (nx / d, ny / d, nz / d)
+    v1, v2 = (v1[0], v1[1], ui), (v2[0], v2[1], uj)
+    a, wa, b, wb, press, solved = meet_in_air(v1, w1, v2, w2, normal, lies, law, series)
     flight.take_off(motion, state, i, t, (x1, y1, zi), a, wa, phys)
     if other == AIR:
         flight.take_off(motion, state, j, t, (x2, y2, zj), b, wb, phys)
@@ -144,23 +136,13 @@ def _in_air(paths, i, kind, j, t, boundaries, phys):
         flight.take_off(motion, state, i, t, (x, y, z), (v[0], v[1], up), w, phys)
     else:
         # it came over the pocket where its path enters the circle
-        fx, fy, radius = (
-            boundaries.falls[j, FALL_X],
-            boundaries.falls[j, FALL_Y],
-            boundaries.falls[j, FALL_RADIUS],
-        )
-        dx, dy, speed2 = x - fx, y - fy, vx * vx + vy * vy
-        back = 0.0
+        fall, speed2, back = boundaries.falls[j], vx * vx + vy * vy, 0.0
+        dx, dy, radius = x - fall[FALL_X], y - fall[FALL_Y], fall[FALL_RADIUS]
         if speed2 > 0.0:
-            along = dx * vx + dy * vy
-            back = (
-                along + sqrt(max(0.0, along * along + (radius * radius - dx * dx - dy * dy) * speed2))
-            ) / speed2
-        falls[i, pocket.IN_X], falls[i, pocket.IN_Y], falls[i, pocket.POCKET] = (
-            dx - vx * back,
-            dy - vy * back,
-            j,
-        )
+            along, inside2 = dx * vx + dy * vy, radius * radius - dx * dx - dy * dy
+            back = (along + sqrt(max(0.0, along * along + inside2 * speed2))) / speed2
+        falls[i, pocket.IN_X], falls[i, pocket.IN_Y] = dx - vx * back, dy - vy * back
+        falls[i, pocket.POCKET] = j
         pocket.next_leg(paths, i, t, (x, y, 0.0), (vx, vy, -u), w, boundaries, phys)
 
 
@@ -247,27 +229,18 @@ def _predict(paths, i, t, boundaries, clear, forecast, phys, aloft):
     best_time[i], best_ball[i] = time, ball
     alone_time[i], alone_kind[i], alone_index[i] = inf, events.NONE, -1
     if state[i] == FALLING:
-        alone_time[i], alone_kind[i], alone_index[i] = (
-            motion[i, T_END],
-            int(falls[i, pocket.KIND]),
-            int(falls[i, pocket.INDEX]),
-        )
+        alone_time[i], alone_index[i] = motion[i, T_END], int(falls[i, pocket.INDEX])
+        alone_kind[i] = int(falls[i, pocket.KIND])
     elif state[i] == AIR:
         if aloft is not None:
-            alone_time[i], alone_kind[i], alone_index[i] = flight.next_event(
-                motion, i, boundaries, clear, phys
-            )
+            s, kind, index = flight.next_event(motion, i, boundaries, clear, phys)
+            alone_time[i], alone_kind[i], alone_index[i] = s, kind, index
     elif not still:
         s, kind, index = boundary_event(motion, state, i, boundaries, clear)
         if s > motion[i, T_END] or kind == events.NONE:
             s, index = motion[i, T_END], -1
-            kind = (
-                events.STOP
-                if state[i] == cloth.ROLL
-                else events.ROLL
-                if state[i] == cloth.SLIDE
-                else events.BEND
-            )
+            kind = events.ROLL if state[i] == cloth.SLIDE else events.BEND
+            kind = events.STOP if state[i] == cloth.ROLL else kind
         alone_time[i], alone_kind[i], alone_index[i] = s, kind, index
 
 
@@ -282,11 +255,9 @@ def _is_clear(motion, i, clear):
 @kernel
 def _is_astray(motion, state, i, reach, boundaries):
     """Whether ball i is on the bed deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
-    return (
-        state[i] != FALLING
-        and state[i] != AIR
-        and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
-    )
+    if state[i] == FALLING or state[i] == AIR:
+        return False
+    return place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
 
 
 @kernel
@@ -403,11 +374,8 @@ def _kind_now(paths, aloft, t, kind, i, j, setup):
         (x, y), (vx, vy), _ = cloth.evaluate(motion, state, i, t, law.phys)
         if pocket.ahead(x, y, vx, vy, boundaries.falls, j, boundaries.jaws, law.phys)[0] < inf:
             return np.int64(events.DROP)
-    if (
-        aloft is not None
-        and (kind == events.LAND or kind == events.RETURN)
-        and _lands_off(motion, state, i, t, clear, reach, boundaries)
-    ):
+    down = aloft is not None and (kind == events.LAND or kind == events.RETURN)
+    if down and _lands_off(motion, state, i, t, clear, reach, boundaries):
         return np.int64(events.OFF if kind == events.LAND else events.POT)
     return kind
 
@@ -551,15 +519,11 @@ def _end(balls, paths, status, last, phys):
 def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_far):
     """Simulate one shot to rest, in place -> status, number of events and of segments, duration [s].
 
-    ``aloft`` None: no ball flies (numba then compiles nothing of it). Such a run stops with ``_LIFTS`` at the first impact
-    after which a ball would go up at ``lift`` [m/s] or faster, and leaves that event to a run with ``aloft`` that goes on
-    with what it has returned, ``so_far``: until a ball flies, the shot costs what it costs without flight.
-    ``aloft``: (n, 2), the height of each ball above the bed [m] and its rate [m/s], and after the shot in the first place 1
-    for a jump shot of ball 0, if it alone moved at first: it flew over a part of a ball before it met one, or came down
-    behind the one that it met from above.
-    ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays:
-    numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
-    """
+    ``aloft`` None: no ball flies. Such a run stops with ``_LIFTS`` at the first impact after which a ball would go up at
+    ``lift`` [m/s] or faster; a run with ``aloft`` then goes on from its result, ``so_far``. ``aloft``: (n, 2), the height
+    of each ball above the bed [m] and its rate [m/s]; after the shot its first number is 1 for a jump shot of ball 0.
+    ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays: numba
+    would count references to the arrays of a tuple at every use (4 % of a shot of two balls)."""
     law, first, boundaries, reach, clear = setup
     phys, segments, (motion, state, over) = law.phys, log.segments, paths
     n_segments = n_events = np.int64(0)
@@ -586,9 +550,8 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
         flies = False
         if aloft is None:
             # also where a ball over a pocket comes back or meets one: ``pocket.aloft`` cannot begin an impact twice
-            if lift < inf and (
-                kind == events.RETURN or (pair and (state[i] == FALLING or state[j] == FALLING))
-            ):
+            at_pocket = kind == events.RETURN or (pair and (state[i] == FALLING or state[j] == FALLING))
+            if lift < inf and at_pocket:
                 status = _LIFTS
                 break
         else:
@@ -634,23 +597,14 @@ def run(balls, aloft, lift, setup, max_events, log, paths, forecast, series, so_
 
 
 @kernel
-def _flies(aloft):
-    """Whether a shot begins with a ball in the air, or on its way up."""
-    flies = False
-    for i in range(aloft.shape[0]):
-        flies |= aloft[i, 0] > 0.0 or aloft[i, 1] != 0.0
-    return flies
-
-
-@kernel
-def _is_sound(balls, aloft, reach, boundaries):
-    """Whether a shot may begin with these places, speeds and spins."""
+def _is_sound(balls, aloft, k, reach, boundaries):
+    """Whether shot k may begin with these places, speeds and spins; ``aloft``: of all shots, or None."""
     positions, velocities, spins, on_table, _potted = balls
     for i in range(positions.shape[0]):
         for c in range(2):
             if not (abs(positions[i, c]) <= FARTHEST and abs(velocities[i, c]) <= FASTEST):
                 return False
-        if aloft is not None and not (0.0 <= aloft[i, 0] <= FARTHEST and abs(aloft[i, 1]) <= FASTEST):
+        if aloft is not None and not (0.0 <= aloft[k, i, 0] <= FARTHEST and abs(aloft[k, i, 1]) <= FASTEST):
             return False
         for c in range(3):
             if not abs(spins[i, c]) <= MOST_SPIN:
@@ -658,24 +612,13 @@ def _is_sound(balls, aloft, reach, boundaries):
     return layout_fault(positions, on_table, reach, boundaries)[1] == SOUND
 
 
-@kernel
-def _kick(phys, friction, to):
-    """Copy constants to ``to``, with a constant friction between balls and without tables of their impacts."""
-    for c in range(CONSTANTS):
-        to[c] = phys[c]
-    to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
-
-
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_from_above))
 def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
-    """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, log and ends have a batch axis.
+    """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, aloft, log and ends have a batch axis.
 
-    ``aloft``: as of ``run``, with a batch axis. Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys,
-    kicks, noses, jaws, falls, reach, fidelity, n_steps, doubt). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 2 us).
-    ``phys``: one row of constants for all shots, or one for each. ``kicks``: none, or for each shot the
-    friction of its first impact of two balls where it is above 0. With ``doubt`` shots are checked first; what
-    may not begin is ``UNSOUND`` and stays.
-    """
+    ``setup``: constants, one row for all shots or one for each; kicks, none or for each shot the friction of its first
+    impact of two balls where that is above 0; noses, jaws, falls, reach, fidelity, n_steps; doubt: whether shots are
+    checked first, and stay ``UNSOUND`` if they may not begin. Plain tuples take 0.3 us a call, named ones 3 us."""
     positions, velocities, spins, on_table, potted = balls
     time, what, segments = log
     status, n_events, n_segments, duration = ends
@@ -686,56 +629,32 @@ def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     n = positions.shape[1]
     m = (n + LANES - 1) // LANES * LANES
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, flight.COLUMNS)))
-    forecast = Forecast(
-        np.empty((4, m)),
-        np.empty((n, m)),
-        np.full(m, inf),
-        np.zeros(n, np.int64),
-        np.full(m, inf),
-        np.zeros(n, np.int64),
-        np.zeros(n, np.int64),
-    )
+    (times, alone), (who, kinds, places) = np.full((2, m), inf), np.zeros((3, n), np.int64)
+    forecast = Forecast(np.empty((4, m)), np.empty((n, m)), times, who, alone, kinds, places)
     for i in range(n, m):
         _bound(forecast.bounds, i, inf, -inf, inf, -inf)
     series = np.zeros(WORK)
     for k in range(start, stop):
         shot = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k])
-        if doubt:
-            sound = (
-                _is_sound(shot, None, reach, boundaries)
-                if aloft
-                is None  # (no variable holds aloft[k], or None: numba then leaves out what does not apply)
-                else _is_sound(shot, aloft[k], reach, boundaries)
-            )
-            if not sound:
-                status[k] = events.UNSOUND
-                continue
+        if doubt and not _is_sound(shot, aloft, k, reach, boundaries):
+            status[k] = events.UNSOUND
+            continue
         law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
         first = law
         if kicks.shape[0] and kicks[k] > 0.0:
-            _kick(law.phys, kicks[k], bad)
+            for c in range(CONSTANTS):  # with a constant friction, and without tables of the impacts of balls
+                bad[c] = law.phys[c]
+            bad[P_MU_BB_LEAST], bad[P_MU_BB_EXTRA], bad[P_BALLS] = kicks[k], 0.0, 0.0
             first = Law(bad, fidelity, n_steps)
-        setting = Setup(law, first, boundaries, reach, clear)
-        shot_log = Log(time[k], what[k], segments[k])
+        world, its = Setup(law, first, boundaries, reach, clear), Log(time[k], what[k], segments[k])
         if aloft is None:
-            found = run(shot, None, inf, setting, max_events, shot_log, paths, forecast, series, None)
+            found = run(shot, None, inf, world, max_events, its, paths, forecast, series, None)
         else:
-            found, flies = (np.int64(events.OK), np.int64(0), np.int64(0), 0.0), _flies(aloft[k])
+            found, flies = (np.int64(events.OK), np.int64(0), np.int64(0), 0.0), False
+            for i in range(n):  # in the air, or on its way up
+                flies |= aloft[k, i, 0] > 0.0 or aloft[k, i, 1] != 0.0
             if not flies:
-                found = run(
-                    shot, None, flight.SETTLE, setting, max_events, shot_log, paths, forecast, series, None
-                )
+                found = run(shot, None, SETTLE, world, max_events, its, paths, forecast, series, None)
             if flies or found[0] == _LIFTS:
-                found = run(
-                    shot,
-                    aloft[k],
-                    flight.SETTLE,
-                    setting,
-                    max_events,
-                    shot_log,
-                    paths,
-                    forecast,
-                    series,
-                    found,
-                )
+                found = run(shot, aloft[k], SETTLE, world, max_events, its, paths, forecast, series, found)
         status[k], n_events[k], n_segments[k], duration[k] = found

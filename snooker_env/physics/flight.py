@@ -72,30 +72,25 @@ from .detection import CREEP, SEAM, SKIN, TOUCH, distance_crossing, space_crossi
 
 SETTLE = 0.03
 """A ball that would leave the bed more slowly stays on it [m/s]: a hop of 46 micrometres and 6 ms. Bounces so end."""
-RAIL = 0.127
-"""Width of a rail, from the edge of the nose to the floor [m]: 5 inches."""
-_NEAR_ENOUGH = 1e-12
-"""A ball this near to a jaw touches it [m]."""
-_GLIDES = 1e-9
-"""The gap of a ball that touches a jaw, but does not approach it [m]."""
+RAIL = 0.127  # width of a rail, from the edge of the nose to the floor [m]: 5 inches
+_NEAR_ENOUGH = 1e-12  # a ball this near to a jaw touches it [m]
+_GLIDES = 1e-9  # the gap of a ball that touches a jaw, but does not approach it [m]
 _HOLLOW = 1e12
 """The most that an edge is hollow: by the centre of its arc; finite, so that it times a speed of zero is zero."""
-_MOST_STEPS = 1000
-"""Of the search for a jaw, which converges as Newton's method does."""
+_MOST_STEPS = 1000  # of the search for a jaw, which converges as Newton's method does
 
 
 MET, STRUCK, WATCHED, WAY_X, WAY_Y, JUMPED = range(pocket.FLIGHT, pocket.FLIGHT + 6)
 COLUMNS = pocket.FLIGHT + 6
 """Of ball 0 in ``Motions.flight``, behind the columns of ``pocket``: the ball that it met first, or -1; below 0 once it is
 certain whether the stroke was a jump shot; the way it came; 1 for a jump shot."""
-OVER = 1e-3
-"""Seen from above a ball covers a part of another if they overlap by this [m]; less no referee sees."""
+OVER = 1e-3  # seen from above a ball covers a part of another if they overlap by this [m]
 
 
 @kernel
 def rub_bed(v, w, press, mu_s, R):
-    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward
-    impulse over the mass: friction mu_s ``press`` against the slip, or 2/7 of the slip, and the ball rolls."""
+    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward impulse over the
+    mass: friction mu_s ``press`` against the slip; at 2/7 of the slip the ball rolls."""
     (vx, vy), (wx, wy) = v, w
     ux, uy = vx - R * wy, vy + R * wx
     slip, friction = hypot(ux, uy), mu_s * press
@@ -140,12 +135,9 @@ def evaluate(motion, state, i, t, phys):
     """``cloth.evaluate`` of a ball that may be in the air."""
     if state[i] != AIR:
         return cloth.evaluate(motion, state, i, t, phys)
-    dt = t - motion[i, T0]
-    return (
-        (motion[i, X] + motion[i, VX] * dt, motion[i, Y] + motion[i, VY] * dt),
-        (motion[i, VX], motion[i, VY]),
-        (motion[i, WX], motion[i, WY], motion[i, WZ]),
-    )
+    dt, v = t - motion[i, T0], (motion[i, VX], motion[i, VY])
+    w = motion[i, WX], motion[i, WY], motion[i, WZ]
+    return (motion[i, X] + v[0] * dt, motion[i, Y] + v[1] * dt), v, w
 
 
 @kernel
@@ -196,8 +188,8 @@ def pair_time(motion, state, i, j, t, d, phys):
 
 @kernel
 def _edge_of(x, y, jaws, k, inset):
-    """The place on the edge of jaw k that is nearest to (x, y) [m], and how hollow the edge is from there, as ``_jaw_time``
-    needs it: at most 1 in front of it; ``inset``: how far the edge lies inside the table's line."""
+    """The place on the edge of jaw k nearest to (x, y) [m], and how hollow the edge is from there (``_jaw_time``): at most 1
+    in front of it. ``inset``: how far the edge lies inside the table's line."""
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half, radius, far = jaws[k, JAW_COS], jaws[k, JAW_RADIUS] + inset, hypot(dx, dy)
     if far == 0.0:
@@ -300,12 +292,8 @@ def next_event(motion, i, boundaries, clear, phys):
     T, g, high = motion[i, T_END] - motion[i, T0], phys[P_G], phys[P_SIN] * phys[P_R]
     inset = R - sqrt(R * R - high * high)
     lo_x, hi_x, lo_y, hi_y = motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y]
-    if (
-        lo_x > clear[0] + inset
-        and hi_x < clear[1] - inset
-        and lo_y > clear[2] + inset
-        and hi_y < clear[3] - inset
-    ):
+    free_x = lo_x > clear[0] + inset and hi_x < clear[1] - inset
+    if free_x and lo_y > clear[2] + inset and hi_y < clear[3] - inset:
         return motion[i, T_END], events.LAND, -1
     x, y, z, vx, vy, u = motion[i, X], motion[i, Y], motion[i, Z], motion[i, VX], motion[i, VY], motion[i, UZ]
     into = _fall_at(x + vx * T, y + vy * T, falls)
@@ -350,13 +338,8 @@ def next_event(motion, i, boundaries, clear, phys):
                 best, index = s, -1
                 kind = events.RAIL if phys[P_E_T] * sqrt(above2) >= SETTLE else events.OFF
     for k in range(falls.shape[0]):
-        dx, dy, radius, speed2 = (
-            x - falls[k, FALL_X],
-            y - falls[k, FALL_Y],
-            falls[k, FALL_RADIUS],
-            vx * vx + vy * vy,
-        )
-        along = dx * vx + dy * vy
+        dx, dy, radius = x - falls[k, FALL_X], y - falls[k, FALL_Y], falls[k, FALL_RADIUS]
+        along, speed2 = dx * vx + dy * vy, vx * vx + vy * vy
         inside = along * along + (radius * radius - dx * dx - dy * dy) * speed2
         if speed2 == 0.0 or inside <= 0.0:
             continue

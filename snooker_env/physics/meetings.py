@@ -19,11 +19,8 @@ PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 
 
 @kernel
 def _hop(closing, spin_energy):
-    """A slow contact: the speed of separation [m/s], and the factor on the spins, which give the energy.
-
-    Per unit of reduced mass: closing^2 / 2 before, parting^2 / 2 after; ``spin_energy`` in the same unit
-    [m^2/s^2].
-    """
+    """A slow contact: the speed of separation [m/s], and the factor on the spins, which give the energy. Per unit of reduced
+    mass: closing^2 / 2 before, parting^2 / 2 after; ``spin_energy`` in the same unit [m^2/s^2]."""
     closing = max(closing, 0.0)
     missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
     if missing <= 0.0:
@@ -44,21 +41,15 @@ def _scale(w, k):
 
 @inline
 def meet(v1, w1, v2, w2, normal, law, series):
-    """Two balls on the bed meet: as ``collide_balls`` or, below ``PART``, a hop. The vertical velocities are what they would
-    have off the bed; the paper drops them."""
+    """Two balls on the bed meet: ``collide_balls`` or, below ``PART``, a hop; vertical velocities as they would be off the bed."""
     (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
         # two equal balls: the reduced mass is M/2, so the spin energy counts double
         parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
         dv = 0.5 * (closing + parting)
-        return (
-            (v1[0] - dv * nx, v1[1] - dv * ny, 0.0),
-            _scale(w1, k),
-            (v2[0] + dv * nx, v2[1] + dv * ny, 0.0),
-            _scale(w2, k),
-            True,
-        )
+        u1, u2 = (v1[0] - dv * nx, v1[1] - dv * ny, 0.0), (v2[0] + dv * nx, v2[1] + dv * ny, 0.0)
+        return u1, _scale(w1, k), u2, _scale(w2, k), True
     e = max(phys[P_E_B], PART / closing)
     v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
     return collide_balls(v1, w1, v2, w2, normal, law, e, series)
@@ -77,9 +68,8 @@ def energy_loss(before, after, R):
 
 @kernel
 def meet_in_air(vc, wc, vo, wo, normal, lies, law, series):
-    """Two balls meet, C in the air, O lower or as high; ``lies``: O is on the bed -> v and w of C and O, the impulse of
-    friction that presses O into the bed (no more than gives back what the impact has lost), solved. ``normal``: from C to
-    O, in three dimensions."""
+    """Two balls meet, C in the air, O lower or as high; ``lies``: O is on the bed; ``normal``: from C to O. -> v and w of C
+    and O, the impulse that presses O into the bed (at most what gives back the energy lost), solved."""
     (x, y, z), phys = normal, law.phys
     dz = vc[2] - (0.0 if lies else vo[2])
     closing = (vc[0] - vo[0]) * x + (vc[1] - vo[1]) * y + dz * z

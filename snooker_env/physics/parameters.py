@@ -14,21 +14,7 @@ import numpy as np
 from .._lib.check import choice, number, refuse, truth
 from .._lib.types import Floats, Ints, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
-from . import conditions
-from .columns import (
-    P_BALLS,
-    P_E_B,
-    P_E_C,
-    P_E_J,
-    P_JAW,
-    P_MU_BB_EXTRA,
-    P_MU_BB_LEAST,
-    P_MU_C,
-    P_MU_R,
-    P_MU_S,
-    P_RAIL,
-    P_SPIN,
-)
+from . import columns, conditions
 from .impact.tables import SIZE, TABLED, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
@@ -41,8 +27,7 @@ end."""
 MOST_SPIN = 1e5
 """Largest spin component of a shot [rad/s], what a strike at ``FASTEST`` can give. Measured: shots are right
 to 1e6 and do not end at 1e7."""
-FARTHEST = 1e6
-"""The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
+FARTHEST = 1e6  # the largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
 """The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
@@ -50,6 +35,11 @@ _FLIES = 1e-300  # in place of a restitution of 0 of the bed, which says that no
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_knee`` and ``e_c_power``. The rebound varies with at most the power 1.25 of e
 (tests/physics/test_cushion_law.py): with a power up to 0.8 it never falls with the speed."""
+_RANGES = {"R": (1e-3, 1), "e_c_power": (0, _MOST_POWER), "nap": (-np.inf, np.inf), "max_offset": (0, 0.999)}
+_RANGES |= dict.fromkeys(("M", "g", "spin_decel", "e_c_knee", "end_mass_ratio"), (0, np.inf))
+_RANGES |= dict.fromkeys(("mu_s", "mu_r", "roll_drag", "e_b", "e_c", "mu_c"), (0, 1))
+_RANGES |= dict.fromkeys(("sin_theta", "e_t"), (0, 0.95))
+"""The lowest and highest value of each field that is a number."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,14 +65,11 @@ class Physics:
         Deceleration of the spin about the vertical [rad/s^2], in every state, >= 0 [MJP14 eq. 21]. With 0
         such a spin stays: a shot ends when no ball moves across the table.
     nap : float
-        Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
-        none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
-        the range of mu_r allows (docs/physics/limits.md).
+        Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]: 0 (none)
+        or below mu_r g in size, so that a ball at rest stays. Not measured (docs/physics/limits.md).
     roll_drag : float
         Growth of the rolling resistance with speed [1/m], in [0, 1]: at v m/s a rolling ball decelerates by
-        mu_r g + roll_drag v^2. 0: none; must be 0 where nap is not. On heated carom cloth it was measured as
-        0.0151, beside 0.0417 m/s^2, up to 1.5 m/s (docs/physics/limits.md); on snooker's, not. Drag in free
-        air would be 0.0042.
+        mu_r g + roll_drag v^2. Must be 0 where nap is not. Measured on heated carom cloth (docs/physics/limits.md).
     e_b : float
         Energetic restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
@@ -94,12 +81,11 @@ class Physics:
         Speed into the cushion above which e falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
     e_c_power : float
         Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c up to e_c_knee, and above it
-        e_c (v / e_c_knee)^(-e_c_power), so v e(v) rises with v; for mu_c, mu_s and sin_theta up to 0.5 so
-        does the rebound of a rolling or stunned ball. An impact that loses energy by yielding has 1/4
-        (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
+        e_c (v / e_c_knee)^(-e_c_power). An impact that loses energy by yielding has 1/4 (Johnson, Contact Mechanics,
+        1985, 11.5).
     e_j : float, optional
-        Energetic restitution at a jaw, at every speed, in [0, 1]. None: e_c, without its fall with speed,
-        because a jaw's rubber is cut thin over wood. Not measured.
+        Energetic restitution at a jaw, at every speed, in [0, 1]; None: e_c, without its fall with speed. Not
+        measured.
     mu_c : float
         Sliding friction between ball and cushion, in [0, 1] [MJP10].
     sin_theta : float
@@ -109,14 +95,14 @@ class Physics:
     max_offset : float
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
     flight : bool
-        Whether balls leave the bed: struck down upon, thrown up by impacts, off a cushion, over other balls, off the
-        table. False: they stay on it, as in the paper. Positions and velocities have a third column where it is True.
+        Whether balls can leave the bed; positions and velocities then may have a third column. False: they stay on it,
+        as in the paper.
     e_t : float
-        Restitution of the bed, in [0, 0.95], where balls fly. Measured nowhere: 0.5 is what is commonly taken.
+        Restitution of the bed, in [0, 0.95], where balls fly. Measured nowhere; 0.5 is common.
     tables : bool
-        Whether impacts of rolling balls come from tables, but for "reference" and "euler:N": faster and more
-        accurate. Those of the presets are stored; other constants make theirs at their first use, in 5 to 200
-        ms (and 10 s, once, to compile what makes them). False: no tables; for constants that are used for few shots.
+        Whether impacts of rolling balls come from tables, except at "reference" and "euler:N": faster and more
+        accurate. Presets have stored tables; other constants make theirs at their first use, in 5 to 200 ms (after
+        10 s, once, of compiling). False suits constants that are used for few shots.
 
     Raises
     ------
@@ -153,38 +139,14 @@ class Physics:
     tables: bool = True
 
     def __post_init__(self) -> None:
-        low_high = {
-            "R": (1e-3, 1),
-            "M": (0, np.inf),
-            "g": (0, np.inf),
-            "mu_s": (0, 1),
-            "mu_r": (0, 1),
-            "spin_decel": (0, np.inf),
-            "nap": (-np.inf, np.inf),
-            "roll_drag": (0, 1),
-            "e_b": (0, 1),
-            "e_c": (0, 1),
-            "e_c_knee": (0, np.inf),
-            "e_c_power": (0, _MOST_POWER),
-            "mu_c": (0, 1),
-            "sin_theta": (0, 0.95),
-            "end_mass_ratio": (0, np.inf),
-            "max_offset": (0, 0.999),
-            "e_t": (0, 0.95),
-        }
         for field in ("R", "M"):
             value = getattr(self, field)
             if isinstance(value, (list, tuple, np.ndarray)) and np.shape(value)[:1] > (1,):
-                raise refuse(
-                    f"physics.{field}",
-                    value,
-                    "must be one number: all balls of a shot are equal (docs/physics/limits.md)",
-                )
-        for field, (low, high) in low_high.items():
-            open_low = field in ("M", "g", "max_offset")
-            object.__setattr__(
-                self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low)
-            )
+                allowed = "must be one number: all balls of a shot are equal (docs/physics/limits.md)"
+                raise refuse(f"physics.{field}", value, allowed)
+        for field, (low, high) in _RANGES.items():
+            value, open_low = getattr(self, field), field in ("M", "g", "max_offset")
+            object.__setattr__(self, field, number(f"physics.{field}", value, low, high, open_low=open_low))
         if self.e_j is not None:
             object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
@@ -194,9 +156,8 @@ class Physics:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
         if self.nap != 0 and not abs(self.nap) < self.mu_r * self.g:
-            raise refuse(
-                "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
-            )
+            allowed = f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
+            raise refuse("physics.nap", self.nap, allowed)
         if self.nap != 0 and self.roll_drag != 0:
             allowed = f"must be 0 with physics.nap = {self.nap!r}: no path is known with both"
             raise refuse("physics.roll_drag", self.roll_drag, allowed)
@@ -209,14 +170,10 @@ class Physics:
     def preset(cls, name: PhysicsName = "paper", **fields: object) -> "Physics":
         """The constants of a preset, with any ``fields`` replaced; ValueError if a name or value is wrong.
 
-        "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and
-        cushion and cloth at speed fitted together (``python -m benchmarks.fit_cushion``): to Fig. 7a of
-        [MJP10], 19 rebounds from 0.26 to 3.40 m/s, and to how far hard throws and a ball off a ramp run on
-        full-size tables. mu_r is 0.0114 (95 %: 0.0088 to 0.0132), and restitution falls as v^-0.243 above 2.02
-        m/s (95 % interval of the power 0.19 to 0.38): e is 0.73 to 0.81 at 5 m/s, 0.65 to 0.76 at 7 and 0.57
-        to 0.71 at 10. "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
-        to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
-        """
+        "paper": [MJP14] and [MJP10]. "match": measured snooker: e_b 0.94, Marlow's mu_bb(s), and cushion and cloth fitted
+        to rebounds up to 3.40 m/s [MJP10, Fig. 7a] and to how far hard throws and a ball off a ramp run on full-size
+        tables (``python -m benchmarks.fit_cushion``). "carom": a heated three-cushion table and its balls, fitted to 61
+        tracked shots of one match (``python -m benchmarks.real_shots``)."""
         choice("physics", name, PRESETS)
         return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)
 
@@ -227,9 +184,8 @@ class Physics:
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
-        """The constants that an argument ``physics`` stands for: None is "paper", a str names a preset, a
-        dict replaces fields of the preset under its key "preset" (or "paper"), a ``Physics`` is itself.
-        ValueError for anything else."""
+        """The constants for an argument ``physics``: None is "paper", a str names a preset, a dict replaces fields of the
+        preset under its key "preset" (or "paper"), a ``Physics`` is itself. ValueError for anything else."""
         if isinstance(physics, cls):
             return physics
         if physics is None or isinstance(physics, str):
@@ -248,21 +204,10 @@ class Physics:
 
     @classmethod
     def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
-        """Draw the constants of a table that was not measured, one of those that a player may meet.
+        """Draw the constants of an unknown table, each uniform within its range and independent of the others.
 
-        Each is uniform within its range and independent of the others: how they go together on real tables is
-        not known. ``conditions.RANGES`` has sources.
-
-        | constant | lowest | highest |
-        |---|---|---|
-        | mu_s | 0.178 | 0.245 |
-        | mu_r | 0.0100 | 0.0128 |
-        | spin_decel [rad/s^2] | 10.9 | 22 |
-        | e_b | 0.92 | 0.96 |
-        | mu_bb, or both terms of its law, times | 0.7 | 1.3 |
-        | mu_c | 0.10 | 0.18 |
-        | e_c | 0.95 | 0.98 |
-        | end_mass_ratio | 25 | 30 |
+        docs/environment/conditions.md has the ranges of mu_s, mu_r, spin_decel, e_b, the scale of mu_bb, mu_c, e_c and
+        end_mass_ratio.
 
         Parameters
         ----------
@@ -300,7 +245,7 @@ class Physics:
                 allowed = f"must be > 0 to simulate a shot, {bounds}: without it no ball comes to rest"
                 raise refuse(f"physics.{name}", getattr(self, name), allowed)
         if self.mu_r * self.g - abs(self.nap) < _LEAST_DECELERATION:
-            allowed = f"must leave a ball that rolls with it {_LEAST_DECELERATION:g} m/s^2 of mu_r g = {self.mu_r * self.g:g} m/s^2"
+            allowed = f"must be at least {_LEAST_DECELERATION:g} m/s^2 below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
             raise refuse("physics.nap", self.nap, allowed)
         if 0 < self.spin_decel < _LEAST_DECELERATION:
             allowed = f"must be 0 (a spin about the vertical stays) or at least {_LEAST_DECELERATION:g} rad/s^2 to simulate a shot"
@@ -323,45 +268,25 @@ class Physics:
         return self._constants.copy()
 
     def packed_for(self, solver: Solver) -> Floats:
-        """The array that the kernels read, always the same one: nobody may write to it.
-
-        For a ``solver`` (as of ``parse_fidelity``) that asks tables of rolling impacts, they stand behind the constants;
-        those that are not a preset's are made now.
-        """
+        """The array that the kernels read, always the same one: nobody may write to it. For a ``solver`` of
+        ``parse_fidelity`` that reads tables of rolling impacts, these stand behind the constants."""
         return self._with_tables if self.tables and solver[0] in TABLED else self._constants
 
     @cached_property
     def _constants(self) -> Floats:
-        return np.array(
-            [
-                self.R,
-                self.M,
-                self.g,
-                self.mu_s,
-                self.mu_r,
-                self.spin_decel,
-                self.e_b,
-                *self.friction_law,
-                self.e_c,
-                self.e_c_knee,
-                self.e_c_power,
-                self.mu_c,
-                self.sin_theta,
-                self.e_c if self.e_j is None else self.e_j,
-                self.nap,
-                self.roll_drag,
-                self.bed_restitution,
-                *(0.0, 0.0, 0.0),
-            ]
-        )
+        balls = self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law
+        cushions = self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta
+        e_j = self.e_c if self.e_j is None else self.e_j
+        tables = 0.0, 0.0, 0.0
+        return np.array([*balls, *cushions, e_j, self.nap, self.roll_drag, self.bed_restitution, *tables])
 
     @cached_property
     def _with_tables(self) -> Floats:
         packed = self._constants.copy()
         rail = Rolling(self.sin_theta, self.mu_c, self.mu_s, self.e_c)
-        wanted = {P_RAIL: rail, P_JAW: rail._replace(e=float(packed[P_E_J]))}
+        wanted = {columns.P_RAIL: rail, columns.P_JAW: rail._replace(e=float(packed[columns.P_E_J]))}
         if self.friction_law[1] == 0.0:
-            wanted[P_BALLS] = Rolling(-1.0, self.friction_law[0], self.mu_s, self.e_b)
+            wanted[columns.P_BALLS] = Rolling(-1.0, self.friction_law[0], self.mu_s, self.e_b)
         made: dict[Rolling, Floats] = {}
         for place, rolling in wanted.items():
             table = made.get(rolling, table_of(rolling))
@@ -392,16 +317,18 @@ def _physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
 def pack_into(rows: Floats, which: Ints, values: Floats, base: Physics) -> None:
     """Write the constants (len(which), 8) into rows (n, 22), each ``Physics.pack`` of ``physics_with``."""
     law, scale = base.friction_law, values[:, conditions.MU_BB_SCALE]
-    rows[which, P_MU_S], rows[which, P_MU_R] = values[:, conditions.MU_S], values[:, conditions.MU_R]
-    rows[which, P_SPIN], rows[which, P_E_B] = values[:, conditions.SPIN_DECEL], values[:, conditions.E_B]
-    rows[which, P_MU_BB_LEAST], rows[which, P_MU_BB_EXTRA] = scale * law[0], scale * law[1]
-    rows[which, P_MU_C], rows[which, P_E_C] = values[:, conditions.MU_C], values[:, conditions.E_C]
+    for column, place in _DRAWN.items():
+        rows[which, place] = values[:, column]
+    rows[which, columns.P_MU_BB_LEAST] = scale * law[0]
+    rows[which, columns.P_MU_BB_EXTRA] = scale * law[1]
     if base.e_j is None:
-        rows[which, P_E_J] = values[:, conditions.E_C]
+        rows[which, columns.P_E_J] = values[:, conditions.E_C]
 
 
-PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None
-"""The type of an argument ``physics``, see ``Physics.of``."""
+PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None  # an argument of ``Physics.of``
+_DRAWN = {conditions.MU_S: columns.P_MU_S, conditions.MU_R: columns.P_MU_R, conditions.E_B: columns.P_E_B}
+_DRAWN |= {conditions.MU_C: columns.P_MU_C, conditions.E_C: columns.P_E_C}
+_DRAWN[conditions.SPIN_DECEL] = columns.P_SPIN
 
 
 def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, float]:
@@ -420,30 +347,9 @@ def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, flo
     return number("physics.mu_bb", value, 0, 1)
 
 
-PRESETS: dict[str, dict[str, Any]] = {
-    "paper": {},
-    "match": {
-        "mu_r": 0.0114,
-        "e_b": 0.94,
-        "mu_bb": "marlow",
-        "e_c": 0.98,
-        "e_c_knee": 2.02,
-        "e_c_power": 0.243,
-    },
-    "carom": {
-        "R": 0.03075,
-        "M": 0.2125,
-        "mu_s": 0.146,
-        "mu_r": 0.00431,
-        "roll_drag": 0.0136,
-        "spin_decel": 3.77,
-        "e_b": 0.917,
-        "mu_bb": 0.0803,
-        "e_c": 0.911,
-        "e_c_knee": 0.695,
-        "e_c_power": 0.0455,
-        "mu_c": 0.238,
-        "sin_theta": 0.201,
-        "tables": False,  # above the knee none is used
-    },
-}
+_MATCH = {"mu_r": 0.0114, "e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.02, "e_c_power": 0.243}
+_BALLS = {"R": 0.03075, "M": 0.2125, "e_b": 0.917, "mu_bb": 0.0803}
+_CLOTH = {"mu_s": 0.146, "mu_r": 0.00431, "roll_drag": 0.0136, "spin_decel": 3.77}
+_CUSHION = {"e_c": 0.911, "e_c_knee": 0.695, "e_c_power": 0.0455, "mu_c": 0.238, "sin_theta": 0.201}
+_CAROM = {**_BALLS, **_CLOTH, **_CUSHION, "tables": False}  # above the knee no table would be used
+PRESETS: dict[str, dict[str, Any]] = {"paper": {}, "match": _MATCH, "carom": _CAROM}

@@ -30,10 +30,8 @@ SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 
 @kernel
 def in_jaw(x, y, jaws, k, R, allowed):
-    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k.
-
-    A jaw is as deep as wide: far behind a straight facing (a very large arc) lies another part of the table.
-    """
+    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k, which is as deep as wide: far behind a straight facing
+    (a very large arc) lies another part of the table."""
     dx, dy, radius, cos_half = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_RADIUS], jaws[k, JAW_COS]
     d2, least = dx * dx + dy * dy, radius + R - allowed
     if not (d2 < least * least and dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY] >= cos_half * sqrt(d2)):
@@ -48,10 +46,8 @@ def _piece_at(x, y, boundaries, allowed, edge):
     noses, jaws, falls, R = boundaries
     for j in range(noses.shape[0]):
         along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
-        if (
-            noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH]
-            and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -allowed
-        ):
+        gap = noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across
+        if noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH] and gap < -allowed:
             return IN_NOSE, j
     for j in range(falls.shape[0]):
         dx, dy, radius = x - falls[j, FALL_X], y - falls[j, FALL_Y], falls[j, FALL_RADIUS] - edge
@@ -67,9 +63,8 @@ def _piece_at(x, y, boundaries, allowed, edge):
 def _is_cut_off(x, y, reach, boundaries):
     """Whether a ball at (x, y) [m], in no piece of the table, is behind one: a fall, a jaw, a nose.
 
-    A pocket grows no narrower towards the table. So a ball in its mouth goes out of it along its axis: straight away from
-    the nearest fall, or back over the nose's line where that is another pocket's. One that is behind a piece meets it.
-    """
+    A pocket grows no narrower towards the table: a ball in its mouth leaves it straight away from the nearest fall, or
+    back over the nose's line if that fall is another pocket's. A ball behind a piece meets it on that way."""
     _noses, _jaws, falls, R = boundaries
     lo_x, hi_x, lo_y, hi_y = reach[0, 2], reach[0, 3], reach[1, 2], reach[1, 3]
     out_x, out_y = min(max(x, lo_x), hi_x) - x, min(max(y, lo_y), hi_y) - y
@@ -95,10 +90,8 @@ def _is_cut_off(x, y, reach, boundaries):
 
 @kernel
 def place_fault(x, y, reach, boundaries, allowed, edge):
-    """What is wrong with a ball on the bed at (x, y) [m]: kind, index of nose, fall or jaw; or (SOUND, -1).
-
-    It may be ``allowed`` [m] deep in a cushion and ``edge`` [m] over a pocket.
-    """
+    """The fault of a ball on the bed at (x, y) [m], ``allowed`` [m] deep in a cushion and ``edge`` [m] over a pocket at most:
+    kind, index of nose, fall or jaw; or (SOUND, -1)."""
     if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
         return OFF, -1
     fault, j = _piece_at(x, y, boundaries, allowed, edge)
@@ -127,10 +120,8 @@ def layout_fault(positions, on_table, reach, boundaries):
 
 @entry
 def first_fault(positions, on_table, reach, noses, jaws, falls, R):
-    """The first unsound place in positions (b, n, 2) [m]: table, ball, kind, index of what it is in.
-
-    ``reach`` (2, 4): lowest and highest x and y of centres [m], and of those that touch a nose. (-1, -1, SOUND, -1) if all are sound.
-    """
+    """The first unsound place in positions (b, n, 2) [m]: table, ball, kind, index; or (-1, -1, SOUND, -1). ``reach`` (2, 4):
+    lowest and highest x and y of centres [m], and of those that touch a nose."""
     boundaries = Boundaries(noses, jaws, falls, R)
     for k in range(positions.shape[0]):
         i, fault, j = layout_fault(positions[k], on_table[k], reach, boundaries)

@@ -40,21 +40,15 @@ from .columns import (
     P_SIN,
 )
 
-JAW, LOST, BACK = range(3)
-"""How a leg of the flight ends."""
-EDGE = 0.5
-"""Restitution on the slate's edge (a ball dropped on covered slate rises to about a quarter)."""
-SLOW = 0.4
-"""A ball slower than this is lost at the edge [m/s]: it tips in before it could come back."""
-SOFT = 0.05
-"""Closing speed below which the ball does not bounce on edge or jaw, but stays in contact [m/s]."""
+JAW, LOST, BACK = range(3)  # how a leg of the flight ends
+EDGE = 0.5  # restitution on the slate's edge (a ball dropped on covered slate rises to about a quarter)
+SLOW = 0.4  # a ball slower than this is lost at the edge [m/s]: it tips in before it could come back
+SOFT = 0.05  # closing speed below which the ball does not bounce on edge or jaw, but stays in contact [m/s]
 STRIDE, STEP = 4e-4, 4e-4
 """Distance in a step [m], and the longest step [s]. With a quarter of both no window of a pocket
 (``benchmarks.pockets``) changes by more than 1.1 mm of its width, most by at most 0.3 mm."""
-SHORTEST = 1e-9
-"""The shortest leg [s]; the ball can meet a jaw right at the edge."""
-_MOST_STEPS = 10_000
-"""After so many steps (seconds) in the mouth a ball is lost: wedged in a throat narrower than it."""
+SHORTEST = 1e-9  # the shortest leg [s]; the ball can meet a jaw right at the edge
+_MOST_STEPS = 10_000  # after so many steps (seconds) a ball in the mouth is lost: wedged in a narrow throat
 IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
 FLIGHT = 12
 """Columns of ``flight``. IN_X, IN_Y: where the ball came in, from the pocket's centre [m]; POCKET. HAD: its
@@ -86,10 +80,8 @@ def _first_arc(x, y, vx, vy, jaws, R):
 def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
     """A ball crosses the edge at (x, y) [m]: time until it hits a jaw [s] (inf: never, -1: maybe), the jaw.
 
-    -1 means that it touches the edge, as tested at the end of the path: over a circle depth grows ever more
-    slowly, but clearing it needs almost linear growth (sqrt(g R)). So who clears it there did before, but for
-    a graze.
-    """
+    -1: it touches the edge, as tested at the end of the path. Over a circle depth grows ever more slowly, but clearing it
+    needs almost linear growth (sqrt(g R)): a ball that clears the edge there did before, but for a graze."""
     R, g = phys[P_R], phys[P_G]
     if vx * vx + vy * vy < SLOW * SLOW:
         return inf, -1
@@ -121,9 +113,7 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 def jaw_gap(r, jaws, k, R, sin_theta):
     """Of a sphere at r = (x, y, z): distance from jaw k in the plane [m], unit vector to it, sin(phi), part.
 
-    Past its ends (part 1, else 0) the arc goes on along its tangents, as throat or nose. Above the nose's
-    height it is a wall: no ball flies over a cushion.
-    """
+    Past its ends (part 1, else 0) the arc goes on along its tangents, as throat or nose. Above the nose it is a wall."""
     x, y, z = r
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half = jaws[k, JAW_COS]
@@ -143,21 +133,14 @@ def jaw_gap(r, jaws, k, R, sin_theta):
     # on the bed a ball touches at R from the table's arc; dropped too, so it comes back without an overlap
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
-    return (
-        far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)),
-        -nx,
-        -ny,
-        sin_phi,
-        part,
-    )
+    reach = 1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)
+    return far - jaws[k, JAW_RADIUS] - R * reach, -nx, -ny, sin_phi, part
 
 
 @kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
-    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal.
-
-    Also: whether the ball touches any jaw, and whether one behind its arc.
-    """
+    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal; then whether the ball
+    touches any jaw, and whether one behind its arc."""
     vx, vy, u = v
     jaw, deepest, hard, touches, behind = -1, 0.0, 0.0, False, False
     px, py, pz = 0.0, 0.0, 0.0
@@ -176,11 +159,9 @@ def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
 
 @kernel
 def fly(r, v, entered, falls, pocket, jaws, phys):
-    """One leg of a flight over ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s].
-
-    entered: where it came in, from the pocket's centre [m]. Returns ``JAW``, ``LOST`` or ``BACK``, the jaw,
-    the duration [s], and r and v at the end (before the jaw's impact; on the bed for ``BACK``).
-    """
+    """One leg of a flight over ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], which ``entered`` the circle at a
+    place from its centre [m]. Returns ``JAW``, ``LOST`` or ``BACK``, the jaw, the duration [s], and r and v at the end
+    (before the jaw's impact; on the bed for ``BACK``)."""
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
     (x, y, z), (vx, vy, u), (in_x, in_y) = r, v, entered
     if z == 0.0 and u == 0.0:  # just over the edge: a ball that clears it goes on to the first jaw
@@ -197,9 +178,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         # from the middle of the arc (the centre of a straight facing's very large circle is far away)
         dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
         dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
-        reach = (
-            jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
-        )
+        half = jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS]))
+        reach = half + 4.0 * R + falls[pocket, FALL_RADIUS]
         if dx * dx + dy * dy < reach * reach:
             first, last = min(first, k), k + 1
     T = 0.0
@@ -212,9 +192,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
-        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw(
-            (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
-        )
+        found = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
+        jaw, deepest, hard, px, py, pz, touches, behind = found
         if behind and depth > 0.0:
             return LOST, -1, T, (x, y, z), (vx, vy, u)  # through the throat
         # it met the jaw within the step, with the velocity of the step: the edge comes after it
@@ -231,9 +210,8 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
                 p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
                 vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
         if touches:
-            _, _, hard, px, py, pz, _, _ = _deepest_jaw(
-                (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
-            )
+            found = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
+            _, _, hard, px, py, pz, _, _ = found
             # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
             if hard <= SOFT:
                 vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz
@@ -273,39 +251,24 @@ def _write(paths, i, t, r, v, w, leg, phys):
     motion[i, AX] = motion[i, AY] = 0.0
     motion[i, WX], motion[i, WY], motion[i, WZ] = w
     motion[i, T0], motion[i, T_END] = t, t + T
-    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = (
-        min(x, x1),
-        max(x, x1),
-        min(y, y1),
-        max(y, y1),
-    )
+    motion[i, LO_X], motion[i, HI_X] = min(x, x1), max(x, x1)
+    motion[i, LO_Y], motion[i, HI_Y] = min(y, y1), max(y, y1)
     # a free fall between the heights at both ends
     motion[i, Z], motion[i, UZ] = -z, (z - z1) / T + 0.5 * phys[P_G] * T
     flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
-    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = (
-        z,
-        u,
-        z1,
-        u1,
-        vx1,
-        vy1,
-    )
+    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1] = z, u, z1, u1
+    flight[i, END_VX], flight[i, END_VY] = vx1, vy1
     flight[i, KIND] = events.JAW if end == JAW else events.RETURN if end == BACK else events.POT
     flight[i, INDEX] = jaw if end == JAW else int(flight[i, POCKET])
 
 
 @kernel
 def aloft(motion, flight, i, t, v, phys):
-    """Ball i in the air meets a ball at t with its leg's velocity v: its velocity; its leg starts anew.
-
-    A leg by the edge or a soft jaw is not straight: its mean speed and the drop may have more energy than the
-    ball had. Then it is slower.
-    """
+    """The velocity of ball i over a pocket as a ball meets it at t; its leg, whose velocity is v, starts anew. A leg by the edge
+    or a soft jaw is not straight: its mean speed and the drop may have more energy than the ball had, which is then slowed."""
     s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
-    z, u = (
-        flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]),
-        flight[i, U0] + s * (flight[i, U1] - flight[i, U0]),
-    )
+    z = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0])
+    u = flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
     vx, vy = v
     has, had = 0.5 * (vx * vx + vy * vy + u * u), max(0.0, flight[i, HAD] + phys[P_G] * z)
     if has > had:

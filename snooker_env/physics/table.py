@@ -1,8 +1,6 @@
 """What bounds the balls? A ``Table``: straight noses, jaw arcs and falls, checked, as arrays for the kernels.
 
-Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball that touches it
-there is lost (``pocket.py``).
-"""
+Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball there is lost."""
 
 from dataclasses import dataclass, field
 from math import hypot, inf
@@ -14,17 +12,45 @@ from .._lib.check import array, choice, flags, number, refuse, refuse_what
 from .._lib.types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .bounds import bounds_of, deepest, narrowest
-from .columns import JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from .columns import FALL_RADIUS, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND, first_fault
-from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
 """How far past the noses a ball can lie at rest [m], unless the pockets let it lie deeper: the depth between
 jaw and fall of snooker's middle pocket."""
-PLAY = 1e-3
-"""Facing noses must be at least this much further apart than a ball is wide [m]."""
-SAME_BALL = 1e-9
-"""A ball's radius may differ by this much from the one that a table is made for [m]."""
+PLAY = 1e-3  # facing noses must be at least this much further apart than a ball is wide [m]
+SAME_BALL = 1e-9  # a ball's radius may differ by this much from the one that a table is made for [m]
+
+
+def _check_shapes(noses: Floats, jaws: Floats, falls: Floats) -> None:
+    """Raise ValueError for a nose, jaw or fall that is not valid."""
+    for k, (axis, side, _, low, high) in enumerate(noses.tolist()):
+        if axis not in (0, 1) or side not in (-1, 1) or not low <= high:
+            allowed = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi"
+            raise refuse(f"table.noses[{k}]", tuple(noses[k].tolist()), allowed)
+    for k, (_, _, radius, ux, uy, cos_half) in enumerate(jaws.tolist()):
+        if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
+            allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
+            raise refuse(f"table.jaws[{k}]", tuple(jaws[k].tolist()), allowed)
+    for k, radius in enumerate(falls[:, FALL_RADIUS].tolist()):
+        if radius <= 0:
+            raise refuse(f"table.falls[{k}]", tuple(falls[k].tolist()), "must be x, y, and a radius > 0")
+
+
+def _check_fit(bed: Bed, ball_radius: float | None) -> None:
+    """Raise ValueError unless a rectangular table's pockets fit its sides and let its ball through."""
+    end = bed.corner.start if bed.corner else 0.0
+    middle = bed.middle.start if bed.middle else 0.0
+    for name, half, taken in (("width", bed.width / 2, end), ("length", bed.length / 2, end + middle)):
+        if not half > taken:
+            allowed = f"must be more than {2 * taken:.6g}, the length that the pockets take on that side"
+            raise refuse(f"table.{name}", 2 * half, allowed)
+    if ball_radius is None:
+        return
+    for name, pocket in (("corner", bed.corner), ("middle", bed.middle)):
+        if pocket is not None and not pocket.throat > 2 * ball_radius:
+            allowed = f"must be less than {pocket.throat / 2:.6g}, half the throat of the {name} pockets"
+            raise refuse("table.ball_radius", ball_radius, allowed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,18 +115,14 @@ class Table:
             a = array(f"table.{name}", getattr(self, name), (-1, columns))
             a.setflags(write=False)
             object.__setattr__(self, name, a)
-        check_shapes(self.noses, self.jaws, self.falls)
+        _check_shapes(self.noses, self.jaws, self.falls)
         if self.ball_radius is not None:
             object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
         names = self.pockets
-        if (
-            not isinstance(names, tuple)
-            or not all(isinstance(name, str) for name in names)
-            or len(names) not in (0, len(self.falls))
-        ):
-            raise refuse(
-                "table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
-            )
+        named = isinstance(names, tuple) and all(isinstance(name, str) for name in names)
+        if not named or len(names) not in (0, len(self.falls)):
+            allowed = f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
+            raise refuse("table.pockets", names, allowed)
         bounds = bounds_of(self.noses)
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
@@ -143,16 +165,13 @@ class Table:
             if shape is not None and not needed:
                 raise refuse(f"table.{field_name}", shape, f"must be None on a table with {pockets} pockets")
             if shape is not None and (not isinstance(shape, Pocket) or shape.is_middle != is_middle):
-                raise refuse(
-                    f"table.{field_name}",
-                    shape,
-                    f"must be a Pocket made by Pocket.{field_name}, or None for snooker's",
-                )
+                allowed = f"must be a Pocket made by Pocket.{field_name}, or None for snooker's"
+                raise refuse(f"table.{field_name}", shape, allowed)
             shapes.append((shape or getattr(PRESETS["match"], field_name)) if needed else None)
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
         bed = Bed(length=length, width=width, corner=shapes[0], middle=shapes[1], ball={})
-        check_fit(bed, ball_radius)
+        _check_fit(bed, ball_radius)
         return cls(name, *parts(bed), ball_radius=ball_radius, pockets=bed.pockets)
 
     @classmethod
@@ -164,11 +183,8 @@ class Table:
             return table
         if isinstance(table, str):
             return cls.preset(table)
-        raise refuse(
-            "table",
-            table,
-            f"must be {', '.join(map(_quote, PRESETS))}, a Table, or None for unbounded cloth",
-        )
+        names = ", ".join(f'"{name}"' for name in PRESETS)
+        raise refuse("table", table, f"must be {names}, a Table, or None for unbounded cloth")
 
     @property
     def is_preset(self) -> bool:
@@ -177,9 +193,8 @@ class Table:
 
     @property
     def ball(self) -> dict[str, float]:
-        """Fields for ``Physics.preset("match", **table.ball)`` of the balls that the table is made for: R
-        [m], M [kg] and sin_theta (nose height) of a preset, R of a table of your own, nothing of a table for
-        any ball."""
+        """Fields for ``Physics.preset("match", **table.ball)`` of the balls that the table is made for: R [m], M [kg] and
+        sin_theta (nose height) of a preset, R of your own table, none of a table for any ball."""
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
         return {} if self.ball_radius is None else {"R": self.ball_radius}
@@ -192,25 +207,23 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth, and beside them the places of
-        balls that touch the noses; kept per R.
-
-        Without pockets that is nowhere: beyond a corner's two noses a ball would be off the table.
-        """
+        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth (nowhere without pockets), and
+        beside them the places of balls that touch the noses; kept per R."""
         if R not in self._reaches:
             has_mouths = len(self.jaws) + len(self.falls) > 0
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R)) if has_mouths else 0.0
             self._reaches[R] = np.tile(self.bounds, 2) + np.array([-past, past, R, -R])
         return self._reaches[R]
 
+    def _first_fault(self, positions, here, R):
+        """``placement.first_fault`` on this table, of balls of radius ``R``."""
+        return first_fault(positions, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
+
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], NaN for
-        balls that are not on the table; ``R``: their radius [m]."""
+        """The indices of the layouts that ``check`` would refuse. ``positions`` (b, n, 2) [m], NaN for a ball off the table."""
         here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
         while True:
-            k, _, fault, _ = first_fault(
-                positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R)
-            )
+            k, _, fault, _ = self._first_fault(positions[first:], here[first:], R)
             if fault == SOUND:
                 return unfit
             first += k + 1
@@ -221,9 +234,8 @@ class Table:
         radius = self.ball_radius
         if radius is not None and abs(R - radius) > SAME_BALL:
             made = f'must be {radius} on table "{self.name}", which is made for it'
-            raise refuse(
-                "physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
-            )
+            allowed = f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
+            raise refuse("physics.R", R, allowed)
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
@@ -236,47 +248,37 @@ class Table:
         field: str = "positions",
         on_table: FlagRows | Flags | None = None,
     ) -> None:
-        """ValueError if a ball is off the table, in a cushion, jaw or other ball, or over a pocket, or the
-        table is made for other balls than ``R`` [m]. ``positions``: float (n, 2) or (b, n, 2), centres [m];
-        ``field``: their name in messages; ``on_table``: bool for each place, False for balls to leave out;
-        None: all."""
+        """ValueError if a ball is off the table, in a cushion, jaw or other ball, or over a pocket, or if the table is made for
+        other balls than ``R`` [m]. ``positions``: centres [m], (n, 2) or (b, n, 2), called ``field`` in messages;
+        ``on_table``: False for places to leave out, None: all count."""
         self.check_ball(R)
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         if positions.ndim not in (2, 3) or positions.shape[-1] != 2:
-            raise refuse_what(
-                field, f"array of shape {positions.shape}", "must have shape (n, 2) or (b, n, 2)"
-            )
+            allowed = "must have shape (n, 2) or (b, n, 2)"
+            raise refuse_what(field, f"array of shape {positions.shape}", allowed)
         places, shape = positions if many else positions[None], positions.shape[:-1]
-        here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(
-            places.shape[:2]
-        )
-        k, i, fault, j = first_fault(
-            places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R)
-        )
+        here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
+        k, i, fault, j = self._first_fault(places, here.reshape(places.shape[:2]), R)
         if fault == SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
         if fault == OFF:
-            ranges = [
-                _range(name, low + R, high - R)
-                for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)
-            ]
-            raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
+            ends = zip("xy", self.bounds.tolist(), strict=True)
+            ranges = ", ".join(filter(None, (_range(name, low + R, high - R) for name, (low, high) in ends)))
+            raise refuse(*place, f"must be on the table, {ranges} away from pockets")
         if fault == IN_NOSE:
             axis, side, level = self.noses[j, [NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL]]
             raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
         if fault == OVER_POCKET:
             raise refuse(*place, "is over a pocket")
         if fault == IN_JAW:
-            raise refuse(
-                *place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})"
-            )
+            at = f"({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})"
+            raise refuse(*place, f"overlaps jaw {j} at {at}")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
-        raise refuse_what(
-            field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed"
-        )
+        allowed = f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed"
+        raise refuse_what(field, f"balls {i} and {j}", allowed)
 
 
 TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``table``
@@ -285,10 +287,6 @@ TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``tab
 def _again(name, noses, jaws, falls, ball_radius, pockets):
     """A table that is no preset; pickling and copying call it."""
     return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
-
-
-def _quote(name):
-    return f'"{name}"'
 
 
 def _range(name: str, low: float, high: float) -> str | None:

@@ -11,10 +11,7 @@ from . import cloth, flight
 @entry
 def states_at(segments, n_balls, times, phys, positions, velocities, spins):
     """Fill positions (m, n, 2) or (m, n, 3) [m], velocities [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,) [s].
-
-    ``segments`` (k, cloth.SEGMENT) in order of time: one holds until the ball's next; of several at one time
-    the last counts (after the impact).
-    """
+    ``segments`` (k, cloth.SEGMENT) in order of time: each holds until the ball's next; of several at one time the last."""
     k = segments.shape[0]
     state = np.empty(k, np.int64)
     for s in range(k):

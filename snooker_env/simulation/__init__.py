@@ -16,7 +16,7 @@ from ..physics.impact import contact
 from ..physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from .count import count
-from .shot import EVENT, Shot, ShotBatch, SimulationError
+from .shot import EVENT, WHY, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096  # of one shot: the times of all pairs are stored (134 MB)
@@ -81,10 +81,10 @@ def simulate(
     positions : array_like, float (n, 2)
         Centres of the balls [m]: origin at the table's centre, +x to the yellow side, +y to the black end.
         Balls may touch balls and cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to
-        4096. With ``physics.flight`` (n, 3), too: the third column is the height of the centre above its height on the bed.
+        4096. With ``physics.flight`` also (n, 3): the third column is the height of the centre above its height on the bed.
     velocities : array_like, float (n, 2)
-        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` (n, 3), too: a ball on the bed that is
-        driven into it bounces.
+        Velocities [m/s], each component within 1,000 of zero. With ``physics.flight`` also (n, 3): a ball that is driven
+        into the bed bounces.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
@@ -103,7 +103,7 @@ def simulate(
     -------
     Shot
         Final positions, pots, the log of events and the paths. ValueError for bad input, SimulationError if the shot
-        does not come to rest within ``max_events`` events, or an impact of it does not end.
+        does not come to rest within ``max_events`` events or the computation of an impact does not end.
 
     Examples
     --------
@@ -260,8 +260,8 @@ _NO_KICKS = np.empty(0)
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. It is
-    taken out until results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
+    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. A shot
+    inside a shot (a signal, a trace function) finds none and makes its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)
@@ -299,9 +299,4 @@ def _failure(out, k, events):
     if events is not None and len(events):
         time, kind, i, j = events[-1].tolist()
         last = f"; the last was {EventKind(kind).name} of {i} and {j} at {time:.6f} s"
-    why = {
-        Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
-        Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
-        Status.ASTRAY: "holds a ball that left the table through a cushion, or where the table is open",
-    }[Status(out.status[k])]
-    return SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")
+    return SimulationError(f"shot {k} {WHY[Status(out.status[k])]} (after {out.n_events[k]} events{last})")

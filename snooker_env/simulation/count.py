@@ -1,7 +1,4 @@
-"""How many shots has this process simulated? One counter, read before and after a decision.
-
-A shot is counted where the engine is started for it (``tasks.stroke.run``, ``simulate``), once if it is
-simulated again because its log was too short. Single impacts are not counted."""
+"""How many shots has this process simulated? One counter; a shot that is simulated again with a longer log counts once."""
 
 import threading
 

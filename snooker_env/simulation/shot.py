@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from .._lib.check import array, refuse
 from .._lib.types import Bools, Floats, Ints, Real, Vector
 from ..physics import trajectory
+from ..physics.events import Status
 from ..physics.parameters import Physics
 from ..physics.table import Table
 
@@ -25,6 +26,14 @@ EVENT_IN_SPACE = np.dtype([*EVENT.descr, ("z", np.float64)])
 
 class SimulationError(RuntimeError):
     """A shot or an impact that could not be computed; the message says which, and what to try."""
+
+
+HELD = "a ball may be held against another; try other physics or, with simulate(), more max_events"
+WHY = {
+    Status.TOO_MANY_EVENTS: f"did not come to rest in time: {HELD}",
+    Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
+    Status.ASTRAY: "holds a ball that left the table through a cushion, or where the table is open",
+}
 
 
 @dataclass(frozen=True, eq=False)

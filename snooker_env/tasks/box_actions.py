@@ -16,19 +16,15 @@ from .declarations import A_AIM, A_ELEVATION, DECLARES, SAYS
 from .lines import aim_along, aim_on, find_lines, list_lines
 from .pot_aim import swerved_aim
 
-AIMS = ("pot", "absolute", "target")
-"""What the aim of a box action can mean."""
+AIMS = ("pot", "absolute", "target")  # what the aim of a box action can mean
 _POT, _TARGET = AIMS.index("pot"), AIMS.index("target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
-SLOWEST, FASTEST = 0.8, 4.6
-"""The same with ``aim="pot"``, in equal ratios: 0 means 1.92 m/s."""
-MOST_SIDE, MOST_TOP = 0.2, 0.4
-"""Tip offsets over R for 1 with ``aim="pot"``: what a player uses."""
+SLOWEST, FASTEST = 0.8, 4.6  # the same with ``aim="pot"``, in equal ratios: 0 means 1.92 m/s
+MOST_SIDE, MOST_TOP = 0.2, 0.4  # tip offsets over R for 1 with ``aim="pot"``: what a player uses
 TARGET_SPAN = radians(3.0)
 """With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
-ROUNDING = 1e-6
-"""How far outside [-1, 1] a component may be, and is clipped: float rounding of a policy's own limits."""
+ROUNDING = 1e-6  # how far outside [-1, 1] a component may be, and is clipped: float rounding of a policy's own limits
 MAX_ELEVATION, STEEPEST = radians(30.0), radians(70.0)
 """The highest elevation of an action, by default and at the most that a person can do [rad]."""
 _RATIO = log(FASTEST / SLOWEST)
@@ -90,10 +86,8 @@ def shot_of(a, positions, on_table, on, options, law, work):
     direction = pi * a[3]
     if options[A_AIM] == _TARGET:
         # without rails a line is aimed as for a level cue
-        raised = elevation if law.rails.shape[0] else 0.0
-        direction = (
-            _target_line(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
-        )
+        stroke = speed, side, top, elevation if law.rails.shape[0] else 0.0
+        direction = _target_line(positions, on_table, on, stroke, law, work) + TARGET_SPAN * a[3]
     return speed, side, top, direction - squirt(side, law.end_mass_ratio), elevation
 
 
@@ -135,7 +129,7 @@ class Actions:
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
 
-        What is up to ``ROUNDING`` outside is clipped."""
+        Components up to ``ROUNDING`` outside are clipped."""
         a = self._read("action", action, (self.size,)).tolist()
         if not all(abs(x) <= 1.0 + ROUNDING for x in a):  # NaN fails too
             raise refuse("action", a, _BOUNDS)

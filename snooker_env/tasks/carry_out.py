@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 @entry(what="the strokes of players in frames", seconds=3)
 def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
-    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``: see
-    ``frame.Asked``; ``codes``: rule set, reward."""
+    """Strokes ``asked`` (``frames.Asked``) of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m.
+    ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = asked
     tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
     (cues, noise), (rules, reward), m = packed, codes, 0
@@ -50,8 +50,7 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
 
 
 def carry_out(frames: "Frames", which: Ints, asked: "Asked", buffers: ShotBuffers, side: int) -> Ints:
-    """Carry out the strokes ``asked`` up to the strike, with the errors of the seat ``side``; returns the tables with a
-    stroke."""
+    """Carry the strokes ``asked`` out up to the strike, with the errors of the seat ``side``; returns the tables with a stroke."""
     codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
     playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
     m = _carry_out(which, asked, *tables, frames.pack(side)[1:3], codes, buffers.struck, playing)

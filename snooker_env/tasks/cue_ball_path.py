@@ -1,10 +1,8 @@
-"""Where will a stroke leave the cue ball, and in a safety the ball that it meets? As a player predicts it: each of them
-alone, past balls that stay where they are. No shot is simulated.
+"""Where will a stroke leave the cue ball, and in a safety the ball that it meets? By closed forms: no shot is simulated.
 
-The solved aim says where the cue ball meets the ball to be potted. From there it moves by the closed forms of ``cloth``;
-each meeting with a nose or another ball is a single impact. Its path is looked at in chords, three for the parabola of a
-sliding ball. A ball that it meets stays where it is, and the potted one is gone: the prediction ends where these would matter.
-"""
+The solved aim says where the cue ball meets the ball to be potted. From there ``cloth`` moves it; each meeting with a
+nose or another ball is a single impact. Its path is tested in chords, three for the parabola of a sliding ball. Balls
+that it meets stay where they are, and the potted one is gone."""
 
 from math import cos, hypot, sin, sqrt
 
@@ -13,6 +11,7 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, SPOTS, VALUES, bits, touching_balls
 from ..game.frame_columns import strikeable
+from ..game.paths import find_first_ball
 from ..geometry import AIM_X, AIM_Y, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics import cloth
 from ..physics.arrays import Law
@@ -27,23 +26,22 @@ from .stroke import row_of
 
 X, Y, NOSES, BALLS, LENGTH, LOST, HIT, NEAR, MISSED, REACH, OBJECT, ASIDE = range(12)
 SEEN = 12
-"""What is predicted of a stroke: where the cue ball stops [m]; how many noses and balls it meets; how far it runs [m]; 1 if
+"""Predictions of a stroke: where the cue ball stops [m]; how many noses and balls it meets; how far it runs [m]; 1 if
 a pocket takes it; how fast it meets the first other ball [m/s]; how near it passes to a pocket [m]; 1 if it does not
 reach the ball, 2 if it passes it; how far the ball to be potted would roll, over the distance to the pocket; its speed
 [m/s], and the sine of the angle by which it leaves off the line to the pocket."""
 NONE = 8  # no ball is on: the visit has cleared the table
 MEETINGS, PHASES, PARTS = 12, 60, 3
 """Meetings of a cue ball that are predicted, phases of its motion, and chords of a sliding phase."""
-TAKEN = 0.055
-"""A cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]."""
+TAKEN = 0.055  # a cue ball that reaches the line of the noses so near to a pocket's aim point is taken [m]
 FAREST = 3.0  # largest ``REACH``
 _LONGEST = 60.0  # longest phase that is looked at [s]
 
 
 @kernel
 def _moment(motion, state, t0, t1, share, x, y, normal, phys):
-    """When within (t0, t1) the cue ball has passed the line through (x, y) with this normal: the share of the chord, and
-    one step of Newton's method."""
+    """When in (t0, t1) the cue ball has passed the line through (x, y) with this normal: by share of the chord, then one step
+    of Newton's method."""
     t = t0 + (t1 - t0) * share
     (px, py), v, _ = cloth.evaluate(motion, state, 0, t, phys)
     speed = v[0] * normal[0] + v[1] * normal[1]
@@ -121,10 +119,8 @@ def _run(positions, on_table, skip, law, work, out):
         ball = v[0], v[1], 0.0
         if met == 1:
             x, y = min(max(x, -right), right), min(max(y, -top), top)
-            closing = v[0] * nx + v[1] * ny
-            v, w, _ok = collide_cushion(
-                ball, w, (nx, ny), law, cushion_restitution(closing, phys), work.series
-            )
+            e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
+            v, w, _ok = collide_cushion(ball, w, (nx, ny), law, e, work.series)
             out[NOSES] += 1.0
         else:
             nx, ny = positions[who, 0] - x, positions[who, 1] - y
@@ -143,15 +139,14 @@ def _run(positions, on_table, skip, law, work, out):
 @kernel
 def played_in_room(stroke, positions, on_table, cue_law):
     """A stroke (5,), its cue raised as it must be, as ``stroke_in_room``."""
-    return stroke_in_room(
-        stroke[3], (stroke[0], stroke[1], stroke[2], stroke[4]), positions, on_table, cue_law
-    )
+    with_tip = stroke[0], stroke[1], stroke[2], stroke[4]
+    return stroke_in_room(stroke[3], with_tip, positions, on_table, cue_law)
 
 
 @kernel(seconds=1)
 def _meet(played, ball, positions, cue_law, work, out):
-    """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether it does, the velocity and the spin
-    that the ball leaves with. The cue ball then begins its way from there; clears ``out`` (SEEN,)."""
+    """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether, the ball's velocity and spin.
+    The cue ball's way begins there; clears ``out`` (SEEN,)."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -165,17 +160,16 @@ def _meet(played, ball, positions, cue_law, work, out):
         out[MISSED] = 1.0 if hypot(x - cx, y - cy) < hypot(bx - cx, by - cy) else 2.0
         return False, still, still
     nx, ny = bx - x, by - y
-    away = hypot(nx, ny)
-    own, w, other, spin, _ok = collide_balls(
-        (v[0], v[1], 0.0), w, still, still, (nx / away, ny / away), law, phys[P_E_B], work.series
-    )
+    away, ball_v = hypot(nx, ny), (v[0], v[1], 0.0)
+    met_at = nx / away, ny / away
+    own, w, other, spin, _ok = collide_balls(ball_v, w, still, still, met_at, law, phys[P_E_B], work.series)
     cloth.begin(motion, state, 0, t, (x, y), (own[0], own[1]), w, phys)
     return True, other, spin
 
 
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
-    """What is predicted of a stroke of ``stroke_in_room`` at a pot, of ball and pocket; fills ``out`` (SEEN,)."""
+    """Predict a stroke of ``stroke_in_room`` at a pot, of ball and pocket: fills ``out`` (SEEN,)."""
     phys, (ball, pocket) = cue_law.phys, pot
     met, other, _spin = _meet(played, ball, positions, cue_law, work, out)
     if not met:
@@ -190,28 +184,13 @@ def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
 
 
-@kernel
-def _first_in_way(stroke, positions, on_table, d):
-    """The ball that a stroke (5,) meets first along the straight line; 0: none."""
-    ux, uy, ball, nearest = cos(stroke[3]), sin(stroke[3]), 0, 1e9
-    for i in range(1, N_BALLS):
-        if on_table[i]:
-            px, py = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
-            along, across = px * ux + py * uy, px * uy - py * ux
-            if along > 0.0 and across * across < d * d:
-                run = along - sqrt(d * d - across * across)
-                if run < nearest:
-                    ball, nearest = i, run
-    return ball
-
-
 @kernel(seconds=1, uses=(_meet, _run))
 def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
-    """What is predicted of a stroke (5,) and of the ball that lies in its way; fills ``out`` and ``its`` (SEEN,), and
-    returns that ball, 0 if there is none."""
+    """Predict a stroke (5,) and the first ball in its way, into ``out`` and ``its``; returns that ball, 0 for none."""
     phys, motion, state = cue_law.phys, work.motion, work.state
     law = Law(phys, cue_law.fidelity, cue_law.n_steps)
-    ball = _first_in_way(stroke, positions, on_table, 2.0 * phys[P_R])
+    ux, uy = cos(stroke[3]), sin(stroke[3])
+    ball = find_first_ball(positions, on_table, positions[0, 0], positions[0, 1], ux, uy, 1e9)
     for c in range(SEEN):
         out[c] = its[c] = 0.0
     out[MISSED], its[NEAR] = 2.0, 9.0
@@ -238,7 +217,7 @@ def _with_error(meant, error, noise, most, tried):
 
 @kernel
 def leave(ball, ball_on, positions, on_table, after, there):
-    """What is left if ``ball`` is potted: fills ``after`` and ``there``, and returns the ball on or ``NONE``."""
+    """The table after ``ball`` is potted: fills ``after`` and ``there``, and returns the ball on or ``NONE``."""
     reds = False
     for i in range(N_BALLS):
         after[i, 0], after[i, 1], there[i] = positions[i, 0], positions[i, 1], on_table[i]
@@ -260,8 +239,7 @@ def leave(ball, ball_on, positions, on_table, after, there):
 @entry(what="the paths of cue balls", seconds=2, uses=(foresee_pot,))
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
-    ``errors`` (k, 5): fills ``out`` (n k, SEEN), and with what they leave if the ball is potted ``left``: positions,
-    on_table, and the ball on or ``NONE``."""
+    ``errors`` (k, 5): fills ``out`` (n k, SEEN) and ``left``: positions, on_table, the ball on or ``NONE`` after the pot."""
     (positions, on_table, ball_on), (after, there, on) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
     work, tried = new_work(), np.empty(5)
@@ -279,16 +257,15 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
 
 @kernel
 def is_fair(ball, touching, on):
-    """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair, with these masks of balls that touch it and that are
-    on: away from a touching ball on all is fair; into a touching one is a push."""
+    """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair with these masks of balls that touch it and are on.
+    Away from a touching ball on every contact is fair; into a touching ball is a push."""
     return ball > 0 and not (touching >> ball) & 1 and (touching & on != 0 or (on >> ball) & 1 != 0)
 
 
 @entry(what="the paths of both balls", seconds=2, uses=(foresee_contact,))
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
-    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors``
-    (k, 5): fills ``out`` (n k, 2, SEEN), of the cue ball and of the first ball in its way, and ``left``: positions,
-    that ball, 0 if it meets none, and whether the stroke meets it as the rules ask."""
+    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5):
+    fills ``out`` (n k, 2, SEEN), of the cue ball and the ball it meets, and ``left``: positions, that ball, whether fair."""
     (positions, on_table, game), (after, met, legal) = balls, left
     phys, ratios, fidelity, n_steps, most, rails = law
     work, tried = new_work(), np.empty(5)
@@ -300,8 +277,7 @@ def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         ball = met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
-        fair = strikeable(game[k], bits(here) & ~1)
-        legal[j] = is_fair(ball, near, fair)
+        legal[j] = is_fair(ball, near, strikeable(game[k], bits(here) & ~1))
         for b in range(N_BALLS):
             after[j, b, 0], after[j, b, 1] = p[b, 0], p[b, 1]
         if ball:

@@ -1,5 +1,5 @@
-"""What does a player say beside its stroke? The colour that it nominates, what it decides after a foul, and whether it
-concedes, claims or lets the other begin: the one place where the numbers of an action become these codes."""
+"""What does a player say beside the stroke? Nominations, decisions after a foul, and declarations (concede, claim, let the
+other begin): the one place where the numbers of an action become these codes."""
 
 from .._lib.jit import kernel
 from ..game import frame_columns as columns
@@ -22,15 +22,15 @@ A_SPEEDS = 10  # of a menu, the cue speeds along each line; 0: the choices are t
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 DECLARES = SAYS[2:]
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
+OPTION_OF = ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT))  # the column that allows each
 COLOURS = 6
 STROKE_CHOICES = 540  # ``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke
 
 
 @kernel
 def nominated_ball(n, row):
-    """The ball that ``n`` (0 none, 1 to 6 yellow to black) nominates. After a red: that colour or, if it is
-    not on the table, the next one that is. Of a free ball: that colour; 0, the ball on itself, if n is 0 or
-    the colour is on anyway or not on the table. Else AUTO: nothing."""
+    """The ball that ``n`` (0 none, 1 to 6 yellow to black) nominates. After a red: that colour, else the next on the table. Of
+    a free ball: that colour; 0, the ball on, if n is 0 or the colour is on anyway or absent. Otherwise AUTO."""
     if row[columns.BALL_ON] == 0:
         for c in range(COLOURS):
             ball = YELLOW + (max(n, 1) - 1 + c) % COLOURS
@@ -108,7 +108,7 @@ def declaration_of(a, options, row):
         extra = int(a[0]) - STROKE_CHOICES * (1 + COLOURS if options[A_NOMINATE] >= 0 else 1)
         if extra < 0:
             return SAYS_NOTHING
-        for declared, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
+        for declared, column in OPTION_OF:
             if options[column]:
                 if extra == 0:
                     what = declared

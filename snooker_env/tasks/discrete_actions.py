@@ -1,6 +1,5 @@
-"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the
-aim is solved for them, or is the straight line if none can be. Without a direct pot (``game.pots``), other
-``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
+"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the aim is solved
+for them, or is the straight line. Without a direct pot other ``lines`` take the pots' places; ``action_masks`` tells."""
 
 from collections.abc import Collection
 from math import atan2, cos, sin, sqrt
@@ -36,8 +35,7 @@ SIZE = POTS * STROKES
 _NEAR_RAIL, _NEAR_BALL = 0.035, 0.061
 """A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
 rail; the centre of a ball."""
-_BESIDE = 0.036
-"""A ball farther from the cue's line is not under a steep cue [m]."""
+_BESIDE = 0.036  # a ball farther from the cue's line is not under a steep cue [m]
 _LOW, _ASIDE = TIP - min(TOPS) * BALL_RADIUS + 1e-3, max(SIDES) * BALL_RADIUS
 """The lowest tip's reach below the centre, with 1 mm for the taper and for squirt, which turns the cue, and the tips'
 reach to the side [m]."""
@@ -83,10 +81,8 @@ def solve_choice(index, positions, on_table, on, law, work):
 
 @kernel
 def _lacks_room(positions, on_table, rails, ax, ay):
-    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``: one that points about
-    along (ax, ay), or any cue if that is (0, 0). A free cue never.
-
-    Over a rail: equations of ``cue_room`` at 45 degrees, tan(t) = 1 / sin(phi), solved for the largest D."""
+    """Whether a cue along (ax, ay), any cue if that is (0, 0), may have to be steeper than ``STEEPEST`` over a rail or ball; a
+    free cue never. Over a rail: equations of ``cue_room`` at 45 degrees, tan(t) = 1 / sin(phi), solved for the largest D."""
     x, y, near, every = positions[0, 0], positions[0, 1], False, ax == 0.0 and ay == 0.0
     for m in range(0, rails.shape[0], EDGE):
         across, along = (x, ax) if rails[m + EDGE_AXIS] == 0.0 else (y, ay)
@@ -104,8 +100,8 @@ def _lacks_room(positions, on_table, rails, ax, ay):
 
 @kernel
 def _without_room(positions, on_table, cue, rows, pots, many, out):
-    """Of the ``many`` lines in ``rows``, which are ``pots`` or not, clear the choices in ``out`` (SIZE,)
-    whose cue must be steeper than ``STEEPEST``, unless none were left."""
+    """Of the ``many`` lines in ``rows`` (``pots`` or not) clear the choices in ``out`` (SIZE,) whose cue must be steeper than
+    ``STEEPEST``, unless none were left."""
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
@@ -150,14 +146,16 @@ def masks(which, positions, on_table, game, options, cue, out):
             if crowded:
                 _without_room(p, here, cue, rows, pots, many, out[j, n * SIZE : (n + 1) * SIZE])
         at = parts * SIZE
-        for what, column in (
-            (declarations.CONCEDES, declarations.A_CONCEDE),
-            (declarations.CLAIMS, declarations.A_CLAIM),
-            (declarations.OTHER_BEGINS, declarations.A_LOT),
-        ):
+        for what, column in declarations.OPTION_OF:
             if options[column]:
                 out[j, at] = declarations.may_declare(what, row)
                 at += 1
+
+
+def require_choices(actions: object) -> None:
+    """ValueError unless these actions are choices, which have masks."""
+    if not isinstance(actions, Choices):
+        raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
 
 
 class Choices:

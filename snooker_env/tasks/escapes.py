@@ -1,13 +1,11 @@
 """Over which cushions does the cue ball reach a ball on that it does not see? A search, and one stroke's aim.
 
-Search. A ball that leaves a cushion slides along a curve before it rolls again, so a mirror image misses by
-up to 20 degrees. What becomes of a rolling ball depends on its angle alone, up to a scale: velocities in
-proportion to that before, the curve's length to its square. ``_REBOUND`` holds this, from shots in the
-simulator, for a ball struck ``ROLLING`` above its middle: for "paper" at any speed, for "match" up to 2 m/s.
+Search. A ball that leaves a cushion slides along a curve before it rolls again: a mirror image misses by up to 20
+degrees. Up to a scale the rebound of a rolling ball depends on its angle alone, as ``_REBOUND`` holds it from simulated
+shots, for a ball struck ``ROLLING`` above its middle: for "paper" at any speed, for "match" up to 2 m/s.
 
-Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
-the engine until it meets a ball, in directions about that of the search, and sent along the middle of
-successes."""
+Aim. Speed, height and side of the strike turn the escape. So the cue ball is played alone with the engine's models,
+in directions about that of the search, and sent along the middle of the successes."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
@@ -15,7 +13,7 @@ import numpy as np
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, events
 from ..physics.arrays import Boundaries, Law
@@ -217,9 +215,8 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, meets a
-    ball on: the middle of the widest, then nearest window
-    about ``about``, or ``about`` itself."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation) meets a ball on: the middle of the widest, then nearest
+    window about ``about``, or ``about`` itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

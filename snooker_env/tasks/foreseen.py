@@ -1,4 +1,4 @@
-"""What does ``observation="strokes"`` show? Of each stroke on the menu what a player foresees of it, by closed forms: no shot is
+"""What does ``observation="strokes"`` show? What a player foresees of each stroke on the menu, by closed forms: no shot is
 simulated and nothing is learned. One kernel for one table and a thousand."""
 
 from math import acos, atan2, pi
@@ -44,10 +44,7 @@ _LEFT = 4  # widest pots of a position that is left, of which it is judged
 _EFFORT = 3e-4, 3e-3, 6
 """With which aims are solved, see ``aim_from``: the rest are of pots that the stroke cannot make."""
 _ASTRAY = 0.02  # sine of an angle by which a ball that is sent off its line misses any pocket
-STATES = (
-    len(STATE_ENTRIES),
-    len(STATE_ENTRIES) + len(FRAME_ENTRIES),
-)  # numbers of the state of a visit, of a frame
+STATES = len(STATE_ENTRIES), len(STATE_ENTRIES) + len(FRAME_ENTRIES)  # of the state of a visit, of a frame
 MOST_WORTH, MOST_PROMISE = 35.0, 42.0  # what a position, and a stroke, may promise [points]
 
 
@@ -67,7 +64,7 @@ class Errors(NamedTuple):
 
 
 class Desk(NamedTuple):
-    """Work space: what is predicted of both balls, the stroke, the table that is left, its open runs and pots, the aims."""
+    """Work space: predictions of both balls, the stroke, the table it leaves, the open runs and pots there, the aims."""
 
     seen: Floats
     its: Floats
@@ -87,11 +84,8 @@ def _observe_path_into(row, seen):
     row[F_X] = min(1.0, max(-1.0, seen[path.X] / HALF_WIDTH))
     row[F_Y] = min(1.0, max(-1.0, seen[path.Y] / HALF_LENGTH))
     row[F_NOSES], row[F_BALLS] = min(1.0, seen[path.NOSES] / 5.0), min(1.0, seen[path.BALLS] / 5.0)
-    row[F_RUN], row[F_LOST], row[F_MISSED] = (
-        min(1.0, seen[path.LENGTH] / 8.0),
-        seen[path.LOST],
-        0.5 * seen[path.MISSED],
-    )
+    row[F_RUN], row[F_LOST] = min(1.0, seen[path.LENGTH] / 8.0), seen[path.LOST]
+    row[F_MISSED] = 0.5 * seen[path.MISSED]
     row[F_NEAR], row[F_REACH] = min(1.0, seen[path.NEAR] / 0.3), seen[path.REACH] / path.FAREST
 
 
@@ -113,11 +107,10 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     free = row.shape[0] > columns.FREE_BALL and row[columns.FREE_BALL] != 0
     free = free and not (balls_on_kernel(row[columns.BALL_ON], 1 << ball)) >> ball & 1
     points = max(1, row[columns.BALL_ON]) if free else VALUES[ball]
-    if free:  # as the ball on; it comes back
-        ball_on = leave(ball, 0, positions, on_table, desk.after, desk.there)
+    before = 0 if free else row[columns.BALL_ON]  # a free ball comes back
+    ball_on = leave(ball, before, positions, on_table, desk.after, desk.there)
+    if free:
         ball_on = 0 if row[columns.BALL_ON] == 1 else row[columns.BALL_ON]
-    else:
-        ball_on = leave(ball, row[columns.BALL_ON], positions, on_table, desk.after, desk.there)
     left, on = points_left(desk.there, ball_on), balls_on_kernel(ball_on, bits(desk.there))
     many = list_runs(desk.after, desk.there, on, BALL_RADIUS, desk.runs)
     ghost, target = (pot[GHOST_X], pot[GHOST_Y]), (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y])
@@ -179,7 +172,7 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
 
 @kernel
 def _repeat_last(rows, many, size):
-    """What is not there shows what is played for it: the last ``size`` numbers of the first ``many``."""
+    """Strokes that are not there show the ones played for them: the last ``size`` numbers of the first ``many``."""
     for c in range(many, rows.shape[0]):
         rows[c] = rows[many - size + (c - many) % size] if c % STROKE_SIZE != F_THERE else 0.0
 
@@ -196,13 +189,8 @@ def foresee(which, at, player, tables, rules, errors, out):
     along, at_pots = speeds * len(TOPS), speeds * PER_SPEED
     strokes = at_pots + (SAFETIES if in_frame else 0)
     choices, state = strokes + (DECISIONS if in_frame else 0), STATES[1 if in_frame else 0]
-    table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
-    wide = (
-        np.empty((MOST_RUNS, RUN_COLUMNS)),
-        np.empty((_LEFT, POT_COLUMNS)),
-        np.empty(0),
-        np.empty(len(TOPS)),
-    )
+    table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_), np.empty((MOST_RUNS, RUN_COLUMNS))
+    wide = np.empty((_LEFT, POT_COLUMNS)), np.empty(0), np.empty(len(TOPS))
     desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
     for j in range(which.shape[0]):
         k, rows = which[j], out[at[j]]
@@ -228,10 +216,8 @@ def foresee(which, at, player, tables, rules, errors, out):
                 _, stroke[0], stroke[1], stroke[2] = menu_stroke(index, speeds)
                 played = stroke[0], stroke[1], stroke[2], 0.0
                 stroke[3] = aim_on(line, pots, played, p, here, on, law, work)
-                one = its[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
-                _foresee_line(
-                    work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one
-                )
+                one, space = its[index * STROKE_SIZE : (index + 1) * STROKE_SIZE], work.lines[line, LINE_ROOM]
+                _foresee_line(space, p, here, on, in_frame, law, errors, work, desk, one)
         _repeat_last(rows[: at_pots * STROKE_SIZE], many * along * STROKE_SIZE, along * STROKE_SIZE)
         if not in_frame:
             continue

@@ -1,6 +1,6 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, over tables.
-Row j of a shot's arrays belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the
-parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos.
+Row j of a shot's arrays belongs to table which[j]. ``tables``, ``saved``, ``shots``, ``output`` and ``setting`` are
+plain tuples of the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
 
 from typing import NamedTuple
 
@@ -22,7 +22,7 @@ from ..physics.engine import EventKind, Status
 from . import declarations, stroke
 from .kernel_arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
-from .rewards import FRAMES_PAID, earnings, frame_reward_of
+from .rewards import FRAMES_PAID, frame_reward_of
 from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -36,7 +36,7 @@ _OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
 
 
 class Setting(NamedTuple):
-    """What is the same for all frames of some tables."""
+    """The constants of all frames of some tables."""
 
     rules: int  # code of the rule set, as in ``frame_columns.Conditions``
     miss: int
@@ -110,14 +110,6 @@ def _hand_back(row):
         row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
-@kernel
-def _leave_the_black(positions, on_table):
-    """Before a re-spotted black: nothing else is on the table, also where the time was up with more on it."""
-    for i in range(1, N_BALLS):
-        on_table[i] = i == BLACK
-    positions[BLACK, 0], positions[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
-
-
 @entry
 def hold_late(which, game, rules, time_to_play, v, w, aloft, shots):
     """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
@@ -165,7 +157,9 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
         if row[columns.OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
             give_up(row, setting.reward)
         if row[columns.PHASE] == columns.LOT:
-            _leave_the_black(p, on)
+            for i in range(1, N_BALLS):  # more were on the table if the time was up
+                on[i] = i == BLACK
+            p[BLACK, 0], p[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
             u, _ = pair(tables.streams[k])
             row[columns.STRIKER] = int(2.0 * u)  # the winner of the lot
             if alone or not setting.lot:
@@ -249,19 +243,19 @@ def _write_frame_info(k, row, player, replies, out):
 
 @kernel
 def _worth(row, reward):
-    """What the agent has earned so far, as the ``reward`` counts it."""
-    frames_lead = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
-    return earnings(reward, columns.lead_of(row, AGENT), frames_lead)
+    """What the agent has earned so far, as the ``reward`` counts it: its lead in frames, or in points."""
+    if reward == FRAMES_PAID:
+        return row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
+    return columns.lead_of(row, AGENT)
 
 
-MOST_STEPS = 20
-"""Steps of an episode of one stroke at most: who fouls, or is sent back to the table, plays again."""
+MOST_STEPS = 20  # steps of an episode of one stroke at most: a player who fouls, or is sent back, plays again
 
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, through, replies, played, output):
-    """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``; ``through``: which
-    episodes of one stroke have ended."""
+    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether one stroke was to be played,
+    and was. No end stays ``due``."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -277,12 +271,10 @@ def finish(which, tables, saved, setting, due, through, replies, played, output)
         fair = played[k] and not out.counts[k, I_FOULS]  # its stroke was no foul
         fair = setting.one_stroke and fair and row[columns.PHASE] != columns.CHOICE
         spent = setting.one_stroke and row[columns.STEPS] >= MOST_STEPS
-        stopped = not row[columns.OVER] and (
-            row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
-        )
+        stopped = row[columns.STROKES] >= setting.max_strokes or (spent and not fair)
         through[k] = fair or spent
         out.terminated[k] = row[columns.OVER] or fair
-        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
+        out.truncated[k] = (stopped and not row[columns.OVER]) or row[columns.STEPS] >= setting.limit
         _write_frame_info(k, row, AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
@@ -297,8 +289,8 @@ def inform(player, game, output):
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. Who breaks: the agent, or if ``drawn``, ``breakers`` (n,), where -1
-    by lot; a number is drawn in any case, so that the errors of strokes do not depend on it."""
+    """New frames on tables already dealt. The agent breaks or, if ``drawn``, ``breakers`` (n,), by lot where that is -1. A
+    number is drawn in any case, so that the errors of strokes do not depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
@@ -394,10 +386,8 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 
 def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Write into ``b.seen`` which shots were attempts; returns the gaps [m], by row, of those that struck no
-    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path. Where no
-    ball on can be hit, only the balls on that the stroke goes toward are left on the table. In hand that never
-    is: too few balls are not on to shut the D in."""
+    """Write into ``b.seen`` which shots were attempts -> the gaps [m], by row, of shots that struck no ball on and had no clear
+    path: they are played again, uncounted, with their path. If no ball on can be hit, only balls on ahead stay."""
     positions, on_table, game, *_ = tables.arrays
     asked, cushions = np.empty(len(which), np.bool_), (tables.rules.table.noses, tables.rules.table.jaws)
     question(which, on_table, game, b.status, b.seen, asked)

@@ -2,18 +2,13 @@
 
 A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the
 referee, ``frame_kernels.conclude``. A step of the frame task is the turn of the agent, player 0, and all
-turns of the opponent, player 1, up to the agent's next one. A match is played turn by turn by both players.
+turns of the opponent, player 1, up to the agent's next one. Both players of a match play turn by turn.
 
-With ``opponent="none"`` the table returns to the agent whenever it would go to the opponent. Penalties still
-go to the opponent's score; after a foul the agent plays on from where the balls lie, without a free ball.
+Alone (``opponent="none"``), the agent plays on after each miss and foul, without a free ball; penalties go to the
+opponent's score. With ``one_stroke`` the episode ends with the agent's first stroke that is no foul.
 
-With ``one_stroke`` the agent begins, and the episode ends with its first stroke that is no foul: when it is
-its turn again, without a choice to make. Who fouls goes on, and who is sent back to the table plays again.
-
-A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
-the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once, so that it can be seen: on
-the free place of the D nearest to its usual one (``balls.SPOTS``), or if it may go anywhere, nearest to where it
-came to rest. The player may place it elsewhere."""
+If a frame ends in the opponent's first visit, the next step plays nothing, reports the end and pays the reward
+(``Frames.due``). A cue ball in hand is placed at once, so that observations show it; the player may move it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -116,9 +111,8 @@ class Frames(Tables):
         self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
-            write_frame(
-                Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.layouts_before, 0
-            )
+            start = Frame.start(miss=rules.miss, rules=rules.game)
+            write_frame(start, 0, self.game[0], self.layouts_before, 0)
             self.game[:] = self.game[0]
             self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
@@ -133,7 +127,7 @@ class Frames(Tables):
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
     def noise_of(self, player: int) -> Noise:
-        """The errors of a player; who plays alone has both turns."""
+        """The errors of a player; alone, the agent has both turns."""
         return self.seats[min(player, len(self.seats) - 1)].noise
 
     @property
@@ -196,10 +190,8 @@ class Frames(Tables):
     def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
         """With a shot clock: shots that would not be begun within it are not played."""
         if self.rules.rule_set.clock:
-            b, code = buffers, self.rules.rule_set.code
-            frame_kernels.hold_late(
-                which, self.game, code, self.rules.time_to_play, b.v, b.w, b.aloft, b.shots
-            )
+            limits, b = (self.rules.rule_set.code, self.rules.time_to_play), buffers
+            frame_kernels.hold_late(which, self.game, *limits, b.v, b.w, b.aloft, b.shots)
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
@@ -250,8 +242,8 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
-        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns
-        where there was a stroke, (n,)."""
+        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns where there was a
+        stroke, (n,)."""
         going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -316,9 +308,8 @@ class Frames(Tables):
             asked = opponent.strokes(self, which, crew)
 
             def play(part, buffers, asked=asked):
-                self.complete(
-                    carry_out(self, part, asked, buffers, OPPONENT), out, buffers, crew, reported=False
-                )
+                struck = carry_out(self, part, asked, buffers, OPPONENT)
+                self.complete(struck, out, buffers, crew, reported=False)
                 self.go_on(part)
 
             crew(which, play)
@@ -345,8 +336,8 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot; without
-        them by lot, too, but the agent in an episode of one stroke."""
+        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); -1, or without them: by lot (by the agent
+        in an episode of one stroke)."""
         plan, usual = self.rules.plan, AGENT if self.rules.one_stroke else -1
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, usual) if breakers is None else breakers
@@ -390,16 +381,16 @@ class Frames(Tables):
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.FrameState`` except "rng"."""
         strokes, opponent = self.game[k, [columns.STROKES, columns.OPPONENT]].tolist()
-        paid = {"opponent": opponent, "unpaid": self._unpaid(k), "due": bool(self.due[k])}
+        unpaid = int(self._worth(k) - self.game[k, columns.PAID])
+        paid = {"opponent": opponent, "unpaid": unpaid, "due": bool(self.due[k])}
         return super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
-
-    def _unpaid(self, k):
-        """What the agent has earned and no reward has paid yet."""
-        return int(self._worth(k) - self.game[k, columns.PAID])
 
     def _worth(self, k):
         """What the agent has earned in the episode so far, as its reward counts."""
-        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
+        mine, other = columns.SCORE_0 + AGENT, columns.SCORE_1 - AGENT
+        if self._reward == FRAMES_PAID:
+            mine, other = columns.FRAMES_0 + AGENT, columns.FRAMES_1 - AGENT
+        return self.game[k, mine] - self.game[k, other]
 
     def check_state(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
@@ -475,11 +466,6 @@ class Matches(Frames):
         deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         alone = len(self.seats) == 1
         frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
-
-    def _worth(self, k):
-        if self._reward == FRAMES_PAID:
-            return self.game[k, columns.FRAMES_0 + AGENT] - self.game[k, columns.FRAMES_1 - AGENT]
-        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
     def get_state(self, k: int) -> dict[str, Any]:
         won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()

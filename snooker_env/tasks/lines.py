@@ -1,9 +1,9 @@
 """Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
 
 ``action="discrete"`` and ``aim="pot"`` choose among up to ``POTS`` lines; ``aim="target"`` is measured from the first.
-Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
-where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
-directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
+Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side; where hardly
+anything is seen, escapes; the middle of the widest window of directions in which a ball on is met first, its two
+edges, thin, and the middles of other windows."""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from .._lib.jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, count_pots, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cloth import COLUMNS
@@ -23,8 +23,7 @@ from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towa
 
 POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
-SAFE_LINES = 6
-"""Number of lines of safeties."""
+SAFE_LINES = 6  # number of lines of safeties
 LINE_ROWS = SAFE_LINES + MOST_EDGES
 """Rows of the work space of lines: up to ``SAFE_LINES`` lines, then room for windows."""
 THIN = 0.62  # of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R
@@ -32,8 +31,7 @@ EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
 """Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
 
 
-BREAK_X = float(SPOTS[0, 0])
-"""Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
+BREAK_X = float(SPOTS[0, 0])  # where the cue ball stands for the break-off: its x, either sign [m]
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
 """Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
 random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""
@@ -110,23 +108,11 @@ def _add_thin(positions, on_table, lines, window, count):
     half = 0.5 * (window[HIGH] - window[LOW])
     middle = window[LOW] + half
     for sign in (-1.0, 1.0):
-        edge = middle + sign * (half - _SLIT)
-        ball = find_first_ball(
-            positions, on_table, positions[0, 0], positions[0, 1], cos(edge), sin(edge), 1e9
-        )
+        edge, x, y = middle + sign * (half - _SLIT), positions[0, 0], positions[0, 1]
+        ball = find_first_ball(positions, on_table, x, y, cos(edge), sin(edge), 1e9)
         thin = (1.0 - THIN) * (half_width(positions, ball) if ball else 0.5 * pi)
         if thin < 0.6 * half:
             count = _add(lines, count, middle + sign * (half - thin), thin)
-    return count
-
-
-@kernel
-def _add_windows(positions, on_table, lines, windows, many, count):
-    """Append the middle of the widest window, a thin contact at either edge of it, and the other middles."""
-    for k in range(many):
-        count = _add_middle(lines, windows[k], count)
-        if k == 0:
-            count = _add_thin(positions, on_table, lines, windows[k], count)
     return count
 
 
@@ -160,7 +146,10 @@ def find_lines(positions, on_table, on, rows):
     """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
     lines, windows = rows[:POTS], rows[POTS:]
     many, count = _begin_lines(positions, on_table, on, lines, windows)
-    count = _add_windows(positions, on_table, lines, windows, many, count)
+    for k in range(many):  # the widest, thin at either edge, then the others
+        count = _add_middle(lines, windows[k], count)
+        if k == 0:
+            count = _add_thin(positions, on_table, lines, windows[k], count)
     return _any_line(positions, on_table, on, lines, count)
 
 
@@ -212,8 +201,8 @@ def line_of(positions, on_table, on, rows):
 
 @kernel
 def aim_at_ball(aim, stroke, positions, on_table, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) leaves, so that it comes to the ball that lies
-    in the direction ``aim``, its cue raised as it must be."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, reaches the ball that lies
+    in the direction ``aim``."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return aim
     x, y = positions[0, 0], positions[0, 1]
@@ -236,9 +225,7 @@ def aim_along(line, stroke, positions, on_table, on, law, work):
 def list_lines(positions, on_table, on, rows):
     """Write the lines to choose from, as ``find_lines``: direct pots, else others; their number, and whether they are pots."""
     many = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS])
-    if many:
-        return many, True
-    return find_lines(positions, on_table, on, rows), False
+    return (many, True) if many else (find_lines(positions, on_table, on, rows), False)
 
 
 @kernel(uses=(solved_aim, aim_along))

@@ -1,12 +1,10 @@
 """How accurately does a player execute a shot? Errors of aim, speed, tip offset and elevation, now and then large ones.
 
-The law: each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a
-stroke is with the probability ``lapse``: a bad cueing, a lost concentration. So each error is a mixture of two
-normal laws, and the errors of one stroke are large together. Without lapses the law is Gaussian.
+Each of a stroke's five errors is normal, and all five are ``lapse_factor`` times as large in a *lapse*, which a stroke
+is with the probability ``lapse``. So each error is a mixture of two normal laws, and large errors come together.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the squirt of a tip
-that is off to the side. No measurement of a snooker player's errors was found: what the levels are set by, their sources
-and what of them is our choice say docs/validation/execution_errors.md."""
+The total error of the cue ball's direction (``Noise.direction_deg``), of aim and squirt, decides a pot. No measurement
+of snooker players' errors was found: docs/validation/execution_errors.md has the sources of the levels and our choices."""
 
 from dataclasses import asdict, dataclass, fields, replace
 from math import degrees, erf, hypot, radians, sqrt
@@ -26,23 +24,10 @@ from ..physics.parameters import Physics, PhysicsLike
 # the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue, and
 # with the speed [s/m]; the normal number from which a stroke is a lapse, inf for never, and how many times larger its
 # errors are.
-(
-    N_SILENT,
-    N_SPEED,
-    N_SPEED_REL,
-    N_TIP,
-    N_AIM,
-    N_ELEVATION,
-    N_KICK,
-    N_STEEPER,
-    N_FASTER,
-    N_LAPSE,
-    N_LAPSE_FACTOR,
-) = range(11)
-DRAWN = 6
-"""Standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse."""
-_SHAPE = ("growth", "lapse", "lapse_factor")
-"""Fields of ``Noise`` that shape errors and make none."""
+N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK = range(7)
+N_STEEPER, N_FASTER, N_LAPSE, N_LAPSE_FACTOR = range(7, 11)
+DRAWN = 6  # standard normal numbers that a stroke draws: five errors, and one that says whether it is a lapse
+_SHAPE = ("growth", "lapse", "lapse_factor")  # fields of ``Noise`` that shape errors and make none
 _NORMAL = NormalDist()
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
@@ -54,8 +39,8 @@ TWICE = radians(15.0)
 
 
 class Spread(NamedTuple):
-    """How the cue ball's direction errs in a stroke at ``POT_SPEED``: normally with the standard deviation ``core`` [rad], and
-    in a lapse, of the probability ``lapse``, with ``factor`` times that."""
+    """How the cue ball's direction errs: normally with the standard deviation ``core`` [rad], in a lapse, of the probability
+    ``lapse``, with ``factor`` times that."""
 
     core: float
     lapse: float = 0.0
@@ -70,8 +55,8 @@ def widen(spread, times):
 
 @kernel
 def chance_within(tolerance, spread):
-    """The chance that an error of the ``Spread`` is within +- ``tolerance`` [rad]: of each normal law
-    P(|e| < t) = erf(t / (sqrt(2) sigma)), of both their mean by the probability of a lapse."""
+    """The chance that an error of the ``Spread`` is within +- ``tolerance`` [rad]: P(|e| < t) = erf(t / (sqrt(2) sigma)) of
+    each normal law, weighted by the probability of a lapse."""
     share = tolerance / (spread.core * sqrt(2.0))
     within = erf(share)
     if spread.lapse > 0.0:
@@ -81,8 +66,7 @@ def chance_within(tolerance, spread):
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under ``errors`` (5,) in standard deviations, a lapse's factor applied: the only law of errors; see
-    ``execute_stroke``."""
+    """The shot under ``errors`` (5,) in standard deviations, a lapse's factor applied: the only law of errors."""
     more = (1.0 + elevation * noise[N_STEEPER]) * sqrt(1.0 + (noise[N_FASTER] * speed) ** 2)
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
@@ -142,8 +126,8 @@ def _errors(streams, noise, out):
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Execution errors: standard deviations of one shot, their growth with the speed, and bad contacts; all at least 0,
-    the default.
+    """Execution errors: standard deviations of one shot, their growth with the speed, lapses and bad contacts. All are
+    at least 0, the default.
 
     Parameters
     ----------
@@ -156,12 +140,12 @@ class Noise:
     growth : float, optional
         How errors of aim and tip grow with the cue speed V: times sqrt(1 + (growth V)^2) [s/m].
     lapse : float, optional
-        Probability of a lapse, in [0, 1]: a stroke whose five errors are all larger.
+        Probability, in [0, 1], of a lapse: a stroke whose five errors are all larger.
     lapse_factor : float, optional
         How many times as large the errors of a lapse are, at least 1.
     kick : float, optional
-        Probability of a kick, in [0, 1]: chalk or dirt between the cue ball and the first ball that it meets,
-        with a friction of ``KICK`` = 0.2 in that one impact. How often it happens is not known.
+        Probability, in [0, 1], of a kick: chalk or dirt between the cue ball and the first ball that it meets, with a
+        friction of ``KICK`` = 0.2 in that one impact. Its frequency in play is not known.
 
     Examples
     --------
@@ -187,8 +171,8 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """Convert a level's name (a key of ``LEVELS``), a dict of fields (those left out are 0) or a
-        ``Noise``, which is returned itself. ValueError for anything else."""
+        """Convert a level's name (a key of ``LEVELS``) or a dict of fields (missing ones are 0); a ``Noise`` is
+        returned itself. ValueError for anything else."""
         if isinstance(noise, cls):
             return noise
         if isinstance(noise, dict):
@@ -202,13 +186,9 @@ class Noise:
         return LEVELS[noise]
 
     def scale(self, times: float) -> "Noise":
-        """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks are the same."""
-        return replace(
-            self,
-            **{
-                f.name: getattr(self, f.name) * times for f in fields(self) if f.name not in (*_SHAPE, "kick")
-            },
-        )
+        """Return a ``Noise`` with every error ``times`` as large; growth, lapses and kicks do not change."""
+        errors = (f.name for f in fields(self) if f.name not in (*_SHAPE, "kick"))
+        return replace(self, **{name: getattr(self, name) * times for name in errors})
 
     @property
     def silent(self) -> bool:
@@ -216,7 +196,7 @@ class Noise:
         return not any(getattr(self, f.name) for f in fields(self) if f.name not in _SHAPE)
 
     def direction_deg(self, physics: PhysicsLike = None, *, speed: float = POT_SPEED) -> float:
-        """Return the standard deviation [deg] of the cue ball's direction, but for lapses: aim and squirt together, for a
+        """Return the standard deviation [deg] of the cue ball's direction without lapses: aim and squirt together, for a
         cue speed [m/s]; default 1.5, about that of a pot.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
@@ -261,15 +241,8 @@ class Noise:
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
-_PROFESSIONAL = Noise(
-    aim_deg=0.014,
-    speed_rel=0.017,
-    offset_mm=0.085,
-    elevation_deg=0.11,
-    growth=1.0,
-    lapse=0.1,
-    lapse_factor=7.0,
-)
+_ERRORS = {"aim_deg": 0.014, "speed_rel": 0.017, "offset_mm": 0.085, "elevation_deg": 0.11}
+_PROFESSIONAL = Noise(**_ERRORS, growth=1.0, lapse=0.1, lapse_factor=7.0)
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
     "professional": _PROFESSIONAL,

@@ -61,8 +61,7 @@ POT_ENTRIES = (
 -1. The chance of a stroke at ``SHOWN_SPEED`` in the middle of the cue ball, and log10 of it / 2, at least -1; the cut, to the
 left above 0, / 90 degrees; the tolerance t [rad] as t / (t + 0.01); value / 7; the ball's place as in ``BALL_COLUMNS``;
 direction (x, y) and distance / 4 m of the ghost ball from the cue ball; the pocket's place."""
-SHOWN_SPEED = 2.0
-"""The cue speed whose chances observations show [m/s]."""
+SHOWN_SPEED = 2.0  # the cue speed whose chances observations show [m/s]
 POTS_SIZE = POTS * len(POT_ENTRIES) + 2 + len(STATE_ENTRIES)
 """Numbers in the observation "pots" (61): the pots, the cue ball's place (0 when off the table), the state of the game."""
 STROKE_ENTRIES = (
@@ -83,8 +82,7 @@ class View(NamedTuple):
     rails: Floats  # as in a cue's row
 
 
-FLAT = View(False, Spread(1.0), np.empty(0))
-"""The balls."""
+FLAT = View(False, Spread(1.0), np.empty(0))  # the balls
 
 
 def space(
@@ -204,12 +202,8 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
         row[at], row[at + 1] = chance, scale_log(chance)
         row[at + 2] = (cut if left else -cut) / (0.5 * pi)
         row[at + 3], row[at + 4] = scale_room(pots[k, TOLERANCE]), VALUES[ball] / 7.0
-        row[at + 5], row[at + 6], row[at + 7], row[at + 8] = (
-            x / HALF_WIDTH,
-            y / HALF_LENGTH,
-            px / far,
-            py / far,
-        )
+        row[at + 5], row[at + 6] = x / HALF_WIDTH, y / HALF_LENGTH
+        row[at + 7], row[at + 8] = px / far, py / far
         row[at + 9], row[at + 10], row[at + 11] = far / _FAR, tx / HALF_WIDTH, ty / HALF_LENGTH
     at, here = POTS * size, on_table[0]
     row[at], row[at + 1] = cx / HALF_WIDTH if here else 0.0, cy / HALF_LENGTH if here else 0.0

@@ -30,8 +30,7 @@ from .stroke_menu import LEAST_SPEEDS, MOST_SPEEDS, SPEEDS, Menu
 from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
-MOST_TIME = 15.0
-"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
+MOST_TIME = 15.0  # the most time to play [s]: the longest shot clock, after which no stroke is in time
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete", "strokes")
@@ -42,10 +41,9 @@ LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 MAX_STROKES = 1000
 """Default number of strokes after which the referee stops a frame. Random players that aim near a pot needed
 284 on average, at most 560 in 2,000 frames (docs/environment/frames.md); some players never finish."""
-FRAMES = 7
-"""Default length of a match: best of 7."""
+FRAMES = 7  # default length of a match: best of 7
 OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
-object: a player or an OpponentPool; players.SeenPlayer makes a player of what acts on observations"""
+object: a player or an OpponentPool; players.SeenPlayer wraps an object that acts on observations"""
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
 
@@ -107,10 +105,10 @@ GROUPS = {
     "shot": ("noise", "physics", "table", "fidelity", "cue", "conditions"),
     "frame": ("miss", "max_strokes", "game", "time_to_play"),
 }
-"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
+"""Groups of options: the game, the actions, the view, the world of a shot, the rules of frames."""
 _OF_FRAMES = "opponent", "trust", "miss", "max_strokes", "says", "game", "time_to_play"
 _ONLY: dict[str, str] = {**dict.fromkeys(_OF_FRAMES, "frame"), "frames": "match"}
-"""The only task that has an option; what is of a frame is of a match, too."""
+"""The only task that has an option; a match has every option of a frame."""
 
 
 def _order_says(says: object) -> tuple[str, ...]:
@@ -123,14 +121,13 @@ def _order_says(says: object) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. ValueError, which
-    names the field, if one is of the wrong type or conflicts with another; TypeError for an unknown one.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. ValueError names a
+    field of the wrong type or in conflict with another; TypeError an unknown one.
 
     Parameters
     ----------
     task : str, default "visit"
-        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several;
-        a match has everything that a frame has.
+        "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several.
     layout : str, default "default"
         How tables are dealt (docs/environment/layouts.md): "opened", "held_out", "safety", "held_out_safety", "escape",
         "held_out_escape", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
@@ -145,7 +142,7 @@ class Options:
     observation : str, default "default"
         "pots", of a visit: one array of the four widest pots. "flat": one array of all balls. "balls": the same as a
         dict of two. "masked", with ``action="discrete"``: a dict of the flat array and the available choices. "strokes": one
-        array of what is foreseen of each stroke on the menu.
+        array of what a player foresees of each stroke on the menu.
         "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
         Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
@@ -165,11 +162,9 @@ class Options:
     fidelity : str, default "standard"
         How impacts are solved (docs/physics/fidelity.md): "fast", "standard", "reference" or "euler:N".
     cue : str, default "free"
-        "free": the cue passes through rails and balls. "real": it is raised over them as far as it must be, and errors
-        grow with its elevation.
+        "free": the cue passes through rails and balls. "real": it is raised over them, and errors grow with its elevation.
     conditions : str, default "fixed"
-        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, with its own random
-        stream (docs/environment/conditions.md). Infos hold them.
+        "drawn": each episode draws eight constants of its table (docs/environment/conditions.md). Infos hold them.
     observe_conditions : bool, default False
         Whether observations hold the constants drawn, from -1 to 1.
     one_stroke : bool, default False
@@ -187,9 +182,8 @@ class Options:
         Of a frame: strokes of both players after which the referee stops it and its match; None: never.
     says : sequence of str, default ()
         Of a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball;
-        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, where
-        the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin;
-        else it begins).
+        else the one struck first), "decision" (after a foul; box actions only), "concede", "claim" (the frame, if the
+        rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin).
     game : str, default "snooker"
         Of a frame: "snooker", "six_red" or "shoot_out", the rules of the game (docs/environment/rules.md).
     time_to_play : float, default 9.0
@@ -253,7 +247,9 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fit_plan(layout, table)
-        kind = self._observation()
+        kinds = observations.OBSERVATIONS[frame:]  # "pots" is of visits alone
+        choice("observation", self.observation, ("default", *kinds))
+        kind = kinds[0] if self.observation == "default" else self.observation
         if kind == "masked" and not isinstance(actions, Choices):
             allowed = 'must be "pots", "flat" or "balls" with action="box": a Box has no masks'
             raise refuse("observation", self.observation, allowed)
@@ -266,8 +262,8 @@ class Options:
             raise refuse("one_stroke", True, 'must be False with task="match"')
         limit = NEVER
         self._check_task()
-        frames = self.frames if self.task == "match" else 0
-        if self.task == "match" and integer("frames", frames, 1, 999) % 2 == 0:
+        frames = integer("frames", self.frames, 1, 999) if self.task == "match" else 0
+        if self.task == "match" and frames % 2 == 0:
             raise refuse("frames", frames, "must be odd, so that one player wins")
         if frame:
             choice("miss", self.miss, MISS_RULES)
@@ -280,31 +276,16 @@ class Options:
                 raise refuse("time_to_play", self.time_to_play, allowed)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                allowed = f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them"
+                allowed = (
+                    f"{OPPONENTS}; Options hold text only: pass an object to the environment, beside them"
+                )
                 raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, kind
-        read = Rules(
-            *world,
-            self.miss,
-            limit,
-            one_stroke,
-            frames,
-            self.game,
-            pause,
-            drawn,
-            observed,
-            self.cue,
-            self.speeds,
-        )
+        play = self.miss, limit, one_stroke, frames, self.game, pause
+        read = Rules(*world, *play, drawn, observed, self.cue, self.speeds)
         object.__setattr__(self, "rules", read)
-
-    def _observation(self) -> ObservationKind:
-        """The kind of observations; ValueError for one that the task has not."""
-        kinds = observations.OBSERVATIONS[self.task != "visit" :]
-        choice("observation", self.observation, ("default", *kinds))
-        return kinds[0] if self.observation == "default" else self.observation
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -325,7 +306,7 @@ class Options:
             try:
                 physics_with(physics, end).check_stopping()
             except ValueError as error:
-                allowed = f"must be 'fixed' with these physics, which do not go with a table drawn: {error}"
+                allowed = f"must be 'fixed' with these physics, which do not suit every table drawn: {error}"
                 raise refuse("conditions", "drawn", allowed) from None
         return drawn, observed
 
@@ -355,7 +336,7 @@ class Options:
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
-        with ``task``, of those that this task has. ValueError if there is no such group or task."""
+        with ``task``, of those of this task. ValueError for an unknown group or task."""
         members = GROUPS[choice("name", name, GROUPS)]
         kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
         keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}

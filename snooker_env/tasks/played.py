@@ -43,25 +43,17 @@ class Played:
     frame: Frame | None = None  # all that the rules know of it after the stroke; None in a visit
     before: Frame | None = None  # the same before the stroke; None where nobody kept it, as the next
     meant: dict[str, Any] | None = None  # the stroke without errors: the fields of ``CueStroke``
-    room: tuple[
-        str, ...
-    ] = ()  # what a real cue did to it: "raised", "moved" (its tip, upwards), "unplayable"
+    room: tuple[str, ...] = ()  # what a real cue did to it: "raised", "moved" (its tip, up), "unplayable"
 
 
-def judgement_of(seen: list[int]) -> dict[str, Any]:
-    """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
+def fields_of(buffers: ShotBuffers, j: int) -> dict[str, Any]:
+    """The fields of ``Played`` that shot j of the buffers holds."""
+    seen, done = buffers.seen[j].tolist(), int(buffers.shots[j, ROOM])
+    names = ("speed", "side", "top", "aim", "elevation")
+    cue = dict(zip(names, buffers.shots[j, CUE_SPEED:ROOM].tolist(), strict=True))
+    room = zip(("raised", "moved", "unplayable"), (RAISED, MOVED, UNPLAYABLE), strict=True)
+    strike = {"cue": cue, "room": tuple(name for name, flag in room if done & flag)}
     cost = {"points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS])}
     before = {"ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "player": seen[PLAYER]}
-    return cost | before | {"first": ids_of(seen[FIRST]), "break_before": seen[BREAK] - seen[SCORED]}
-
-
-def strike_of(buffers: ShotBuffers, j: int) -> dict[str, float]:
-    """The field ``cue`` of ``Played``, for shot j."""
-    names = ("speed", "side", "top", "aim", "elevation")
-    return dict(zip(names, buffers.shots[j, CUE_SPEED:ROOM].tolist(), strict=True))
-
-
-def room_of(buffers: ShotBuffers, j: int) -> tuple[str, ...]:
-    """The field ``room`` of ``Played``, for shot j."""
-    done, flags = int(buffers.shots[j, ROOM]), (RAISED, MOVED, UNPLAYABLE)
-    return tuple(n for n, flag in zip(("raised", "moved", "unplayable"), flags, strict=True) if done & flag)
+    first = {"first": ids_of(seen[FIRST]), "break_before": seen[BREAK] - seen[SCORED]}
+    return strike | cost | before | first

@@ -1,6 +1,6 @@
-"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
-and the object ball's own curve: the two balls alone are played on unbounded cloth until the object ball
-rolls; secant steps correct the direction by how far it passes the pocket's aim point."""
+"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve and the object
+ball's own curve: both balls alone are played on unbounded cloth until the object ball rolls, and secant steps correct
+the direction by how far it passes the pocket's aim point."""
 
 from math import atan2, hypot, pi
 
@@ -14,21 +14,19 @@ from ..physics.impact.contact import collide_balls
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
-_ROUNDS, _NEARLY = 4, 1e-5
-"""Of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]."""
+_ROUNDS, _NEARLY = 4, 1e-5  # corrections in ``swerved_aim``; the last may be as large as that [rad]
 _STEPS, _THERE = 30, 1e-9  # of Newton's method along the path, two to four as a rule; near enough [m]
 _SAME_ROOM = 1e-4
 """A cue that turns by less keeps its elevation while an aim is solved [rad]: nine of ten object balls then pass the aim
 point by less than 2e-5 rad."""
-_SWERVE = 5e-3
-"""The same of the first trial, which only shows the way and is never the last [rad]."""
+_SWERVE = 5e-3  # the same of the first trial, which only shows the way and is never the last [rad]
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 
 
 @kernel
 def stroke_in_room(aim, stroke, positions, on_table, law):
-    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is meant to leave
-    in the direction ``aim``, its cue raised as it must be."""
+    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is to leave in the
+    direction ``aim``, its cue raised as it must be."""
     speed, side, top, elevation = stroke
     meant = speed, side, top, aim - cue.squirt(side, law.end_mass_ratio), elevation
     return in_room(meant, positions, on_table, law.rails, law.phys[P_R], law.max_offset)[0]
@@ -37,16 +35,14 @@ def stroke_in_room(aim, stroke, positions, on_table, law):
 @kernel
 def struck_by(played, law):
     """Velocity and spin of a stroke of ``stroke_in_room``; see ``cue.strike_ball``."""
-    speed, side, top, aim, elevation = played
-    return cue.strike_ball(
-        speed, aim, side, top, elevation, law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio, 0.0
-    )
+    (speed, side, top, aim, elevation), R, mu_s = played, law.phys[P_R], law.phys[P_MU_S]
+    return cue.strike_ball(speed, aim, side, top, elevation, R, mu_s, law.end_mass_ratio, 0.0)
 
 
 @kernel
 def meets(played, positions, b, law, work):
-    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others: whether it
-    does, and when [s]. Both balls are then in ``work.motion``."""
+    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others -> whether, and when
+    [s]; both balls are then in ``work.motion``."""
     phys, motion, state = law.phys, work.motion, work.state
     (vx, vy, _), w = struck_by(played, law)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
@@ -75,8 +71,7 @@ def _passes(played, positions, b, p, law, work):
     d = hypot(nx, ny)
     still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
     ball, normal = (v[0], v[1], 0.0), (nx / d, ny / d)
-    after = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
-    _v1, _w1, v2, w2, solved = after
+    _, _, v2, w2, solved = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
     if not solved:
         return 9.0
     cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
@@ -145,8 +140,8 @@ def _off(played, line, far, positions, law, work):
 
 @kernel
 def swerved_aim(line, far, stroke, positions, on_table, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
-    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised cue brings it
+    to the place ``far`` along the direction ``line``. A free cue's is the line itself."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return line
     aim, last_aim, last, slope = line, line, 0.0, 1.0
@@ -163,8 +158,8 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
 
 @kernel(seconds=5, uses=(collide_balls,))
 def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, law, work):
-    """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: the ball
-    may pass the target by so much [rad], a cue that turns by less keeps its elevation [rad], and the most trials."""
+    """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: how far the
+    ball may pass the target [rad], by how much the cue may turn at the same elevation [rad], the most trials."""
     enough, same, trials = effort
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
@@ -211,9 +206,7 @@ def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, la
 
 @kernel(uses=(aim_from,))
 def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
-    as it must be."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised as needed."""
     line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])
-    return aim_from(
-        line, (_ENOUGH, _SAME_ROOM, _TRIALS), positions, on_table, ball, target, ghost, stroke, law, work
-    )[0]
+    effort = _ENOUGH, _SAME_ROOM, _TRIALS
+    return aim_from(line, effort, positions, on_table, ball, target, ghost, stroke, law, work)[0]

@@ -16,10 +16,8 @@ FAR = 0.01  # decay of the chance per metre of both balls' paths [1/m]: the widt
 
 @kernel
 def pot_chance(tolerance, length, spread):
-    """The chance of a pot that allows errors of ``tolerance`` [rad], with paths of both balls of ``length`` [m] together.
-
-    P(|error| < tolerance) by the ``Spread`` of the player's direction, times exp(-``FAR`` length).
-    """
+    """The chance of a pot that allows errors of ``tolerance`` [rad], with paths of both balls of ``length`` [m]
+    together: P(|error| < tolerance) by the ``Spread`` of the player's direction, times exp(-``FAR`` length)."""
     return chance_within(tolerance, spread) * exp(-FAR * length)
 
 
@@ -49,9 +47,8 @@ def raised_spread(spread, side, top, aim, positions, on_table, rails):
     """``spread`` of a stroke whose cue, pointing in the direction ``aim`` [rad], must be raised."""
     if rails.shape[0] == 0:
         return spread
-    return at_elevation(
-        spread, least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
-    )
+    least = least_elevation((side, top, aim, 0.0), positions, on_table, rails, BALL_RADIUS)
+    return at_elevation(spread, least)
 
 
 @kernel

@@ -27,14 +27,8 @@ MATCH_REWARDS = (*FRAME_REWARDS, "frames")
 
 
 @kernel
-def earnings(kind, lead, frames_lead):
-    """What PAID counts for the reward ``kind``: a player's lead in frames, or in points."""
-    return frames_lead if kind == FRAMES_PAID else lead
-
-
-@kernel
 def frame_reward_of(kind, gained, winner, player):
-    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: ``earnings`` unpaid, ``winner``: or -1."""
+    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: not paid yet, ``winner``: or -1."""
     if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0

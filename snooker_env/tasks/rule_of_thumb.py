@@ -8,8 +8,7 @@ from ..game.pots import POT_BALL
 from .pot_chance import FAR, length_of, plain_chance
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
-FOLLOWS = 25.0
-"""Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
+FOLLOWS = 25.0  # points that the rest of the visit brings after a pot; fewer if fewer are left on the table
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
 DISTANT = 0.09
@@ -33,8 +32,8 @@ def points_left(on_table, ball_on):
 
 @kernel
 def worth_of_pots(lines, many, positions, on_table, left, spread, constants, rails, chances):
-    """The worth [points] of the first ``many`` rows of ``find_pots`` together, with ``left`` points on the table; the chances
-    of the widest go into ``chances``, and those of the two that are worth most are returned with it."""
+    """The worth [points] of the first ``many`` rows of ``find_pots`` together, with ``left`` points on the table, and the chances
+    of the two that are worth most; ``chances`` takes those of the widest."""
     follows, second, third, distant = constants
     a = b = c = first = other = 0.0
     for j in range(many):

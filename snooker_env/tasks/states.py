@@ -15,8 +15,7 @@ from ..physics.conditions import RANGES
 from ..physics.table import Table
 from .options import Rules
 
-MOST = 2**53 - 1
-"""Largest score and number of strokes in a saved frame: a float, as in observations, is still exact."""
+MOST = 2**53 - 1  # largest score and number of strokes in a saved frame: a float of it is still exact
 FAR = 1000.0  # limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow
 
 
@@ -170,8 +169,8 @@ def check_visit(
 def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
-    """The ``FrameState`` that a dict describes, under these rules; ``lot``: a player may be asked who begins at a
-    re-spotted black. ValueError names the first wrong part."""
+    """The ``FrameState`` that a dict describes; ValueError names the first wrong part. ``lot``: whether a player may be asked
+    who begins at a re-spotted black."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
@@ -235,9 +234,5 @@ def _check_return(frame, table, R):
         allowed = "must hold the cue ball and the balls of state.frame.saved.on_table, no others"
         raise refuse(f"{field}[1]", on_table.tolist(), allowed)
     check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
-    return replace(saved, layout=layout_of(positions, on_table))
-
-
-def layout_of(positions: Floats, on_table: Bools) -> tuple[Any, ...]:
-    """The layout as ``Saved`` keeps it: what JSON can hold, and unchanging."""
-    return tuple(map(tuple, positions.tolist())), tuple(on_table.tolist())
+    layout = tuple(map(tuple, positions.tolist())), tuple(on_table.tolist())  # unchanging, and for JSON
+    return replace(saved, layout=layout)

@@ -1,6 +1,5 @@
-"""How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike),
-then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table
-which[j]. Each table draws from its own stream: no result depends on other tables or threads."""
+"""How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike), then
+``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table which[j]."""
 
 from typing import Any
 
@@ -20,7 +19,7 @@ from ..physics.engine import EventKind, Status
 from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
+from ..simulation import EVENT, MAX_EVENTS, WHY, Shot, SimulationError
 from ..simulation.count import count
 from . import discrete_actions
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
@@ -43,17 +42,12 @@ FIRST, TOUCHING, MOVED, DOWN, OFF, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = rang
 PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(9, 16)
 SEEN_COLUMNS = 16
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
-_WHY = {
-    Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
-    Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
-    Status.ASTRAY: "holds a ball that left the table through a cushion",
-}
 
 
 @kernel
 def _played_into(positions, ball, vx, vy, time):
-    """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at
-    ``time`` [s]: its line leads into it, or they met at once, also along the tangent."""
+    """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at ``time`` [s]: its
+    line leads into it, or they met at once, also along the tangent."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
     into = abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
@@ -62,8 +56,8 @@ def _played_into(positions, ball, vx, vy, time):
 
 @kernel
 def find_first_contact(event_time, event_what, n_events, touching, positions, vx, vy):
-    """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
-    into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
+    """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played into, a push stroke;
+    one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
         kind, time = event_what[e, 0], event_time[e]
@@ -105,8 +99,8 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def played_in(intended, positions, on_table, cue_row, shot):
-    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; what
-    was done is recorded in the row ``shot``."""
+    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; ``shot`` records
+    what was done."""
     rails, most = cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
     played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
     for c in range(5):
@@ -116,14 +110,13 @@ def played_in(intended, positions, on_table, cue_row, shot):
 
 @kernel
 def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
-    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, for which there is room, with errors.
-    The cue is raised once more where these took its room."""
+    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. Where these took the cue's room, it
+    is raised once more."""
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
-        elevation = raise_cue(
-            (side, top, aim, elevation), positions, on_table, cue_row[C_RAILS:], BALL_RADIUS
-        )
+        cue_at, rails = (side, top, aim, elevation), cue_row[C_RAILS:]
+        elevation = raise_cue(cue_at, positions, on_table, rails, BALL_RADIUS)
     shot, r, v, w, aloft, here = shots.shots[j], shots.r, shots.v, shots.w, shots.aloft, shots.here
     mu_s, m = cue_row[C_MU_S], cue_row[C_END_MASS]
     after = cue.strike_ball(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m, cue_row[C_E_T])
@@ -139,8 +132,7 @@ def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
 
 @kernel
 def strike(intended, positions, on_table, stream, cue_row, noise, j, shots):
-    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``execute_stroke``), as far as there is room
-    for the cue, with errors."""
+    """Shot j: the table as it lies, the cue ball struck as ``intended``, as far as the cue has room, with errors."""
     meant = played_in(intended, positions, on_table, cue_row, shots.shots[j])
     strike_with(meant, execute_stroke(*meant, noise, stream), positions, on_table, cue_row, j, shots)
     shots.kicks[j] = kick_of(noise, stream)
@@ -213,8 +205,8 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; also in ``seen``,
-    with whether it was a jump shot."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them too, and
+    whether it was a jump shot."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
@@ -291,14 +283,10 @@ class ShotBuffers:
         return Shot(*ends, events, segments, physics, table)
 
 
-def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
-    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each."""
-    count(m)
-    _simulate(buffers, m, rules, phys)
-
-
-def _simulate(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
-    """The same without counting them."""
+def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool = False) -> None:
+    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each. Shots that are
+    played ``again`` count once."""
+    count(0 if again else m)
     table = rules.table
     buffers.enlarged = {}
     balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
@@ -318,10 +306,10 @@ def run_again(
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
         one.r[0], one.here[0] = positions, on_table
-        _simulate(one, 1, rules, phys)  # counted already
+        run(one, 1, rules, phys, again=True)
         status = one.status[0]
     if status != Status.OK:
-        raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
+        raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
     buffers.enlarged[j] = one
     return one
 
@@ -332,5 +320,5 @@ def with_path(
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
-    _simulate(one, 1, rules, phys)
+    run(one, 1, rules, phys, again=True)
     return one

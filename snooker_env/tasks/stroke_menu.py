@@ -1,6 +1,6 @@
-"""Which strokes does ``action="strokes"`` choose from? A menu of complete strokes for the position: along up to ``POTS`` direct
-pots or, where there is none, other ``lines``, at every speed and height of the tip. In frames safeties follow, along lines of
-their own, and the decisions after a foul. The aim is solved for the stroke."""
+"""Which strokes does ``action="strokes"`` choose from? A menu of complete strokes: along up to ``POTS`` direct pots or, where
+there is none, other ``lines``, at every speed and height of the tip; in frames then safeties, along lines of their own,
+and the decisions after a foul. The aim is solved for the stroke."""
 
 import numpy as np
 from gymnasium import spaces
@@ -32,10 +32,8 @@ SPEEDS = 9
 LEAST_SPEEDS, MOST_SPEEDS = 2, 20
 TOPS = (-MOST_TOP, 0.0, MOST_TOP)
 """The tip offsets at pots, over R, upwards."""
-PER_SPEED = POTS * len(TOPS)
-"""Strokes at pots of each cue speed."""
-SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)
-"""The same of safeties."""
+PER_SPEED = POTS * len(TOPS)  # strokes at pots of each cue speed
+SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)  # the same of safeties
 SAFE_ALONG = len(SAFE_SPEEDS) * len(SAFE_TOPS)
 SAFETIES = SAFE_LINES * SAFE_ALONG
 DECISIONS = 2
@@ -48,7 +46,7 @@ def menu_size(speeds: int, frame: bool) -> int:
 
 
 def speeds_of(choices: int, frame: bool) -> int:
-    """The speeds along each pot on a menu of so many ``choices``; 0: there is no such menu."""
+    """The speeds along each pot on a menu of so many ``choices``; 0: no menu has so many."""
     speeds, rest = divmod(choices - menu_size(0, frame), PER_SPEED)
     return speeds if rest == 0 and LEAST_SPEEDS <= speeds <= MOST_SPEEDS else 0
 
@@ -80,8 +78,8 @@ def safe_stroke(safety, end_red, lines, positions, on_table, on, law, work):
 
 @kernel(seconds=1, uses=(aim_on, safe_stroke))
 def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
-    """(speed, side, top, aim, elevation) of the choice ``index``, as ``box_actions.shot_of``; one that is not there is the same
-    stroke along the last line that is, a decision the last stroke."""
+    """(speed, side, top, aim, elevation) of the choice ``index``; if that is not there, of the same stroke along the last line
+    that is, or, for a decision, of the last stroke."""
     safety = min(index - speeds * PER_SPEED, SAFETIES - 1)
     if safety < 0:
         line, speed, side, top = menu_stroke(index, speeds)
@@ -105,7 +103,7 @@ def decisions_of(row, rules):
 
 @entry(what="the menus of strokes", seconds=1)
 def menu_masks(which, positions, on_table, game, speeds, rules, out):
-    """What is on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
+    """The strokes on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
     rows, at_pots = np.empty((LINE_ROWS, POT_COLUMNS)), speeds * PER_SPEED
     last = at_pots + SAFETIES
     for j in range(which.shape[0]):
@@ -124,7 +122,7 @@ def menu_masks(which, positions, on_table, game, speeds, rules, out):
 
 class Menu(Choices):
     """The action space of a menu: (line * speeds + speed) * 3 + height; of a frame then (line * 4 + speed) * 2 + height for
-    safeties, and the decisions. What is not there is played as the same stroke along the last line that is."""
+    safeties, and the decisions. A stroke that is not there is played along the last line that is."""
 
     def __init__(self, speeds: int = SPEEDS, *, frame: bool = False) -> None:
         super().__init__()

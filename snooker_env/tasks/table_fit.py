@@ -16,9 +16,8 @@ ROUNDING = 1e-9  # tolerance of noses, jaws and falls [m]
 
 
 def table_of(table: TableLike) -> Table:
-    """The ``Table`` of an environment's argument; ValueError unless every place that a layout may deal is
-    free on it. Spots, rack, D, random and respotted balls lie where |x| <= 0.86275 and |y| <= 1.75825: the
-    noses must be where snooker's are, and no jaw or fall may reach a ball there."""
+    """The ``Table`` of an environment's argument; ValueError unless it leaves every place free that a layout may deal: the noses
+    must be snooker's, and no jaw or fall may reach a ball at |x| <= 0.86275, |y| <= 1.75825."""
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
@@ -48,17 +47,15 @@ def _check_noses(cloth: Table) -> None:
 
 def _check_pockets(cloth: Table) -> None:
     room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
-    for name, circles, reach in (
-        ("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS),
-        ("falls", cloth.falls, cloth.falls[:, 2]),
-    ):
+    kinds = ("jaws", cloth.jaws, BALL_RADIUS), ("falls", cloth.falls, 0.0)
+    for name, circles, more in kinds:
+        reach = circles[:, 2] + more
         inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
         if len(inside) and inside.max() > ROUNDING:
             k = int(inside.argmax())
-            allowed = (
-                f"must leave a ball's centre free in |x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there: "
-                f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
-            )
+            free = f"|x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there"
+            into = f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
+            allowed = f"must leave a ball's centre free in {free}: {into}"
             raise refuse("table", cloth.name, allowed)
 
 

@@ -1,5 +1,5 @@
-"""What do visits and frames share? n tables side by side: reset, step, infos, states. A step is the same for
-every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads."""
+"""What do visits and frames share? n tables side by side: reset, step, infos, states, for ``SnookerEnv`` with one
+table and ``SnookerVectorEnv`` with thousands, on threads."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
@@ -24,7 +24,7 @@ from .foreseen import Errors, foresee
 from .kernel_arrays import C_END_MASS, Packed
 from .noise import Noise
 from .options import NEVER, Rules
-from .played import Played, judgement_of, room_of, strike_of
+from .played import Played, fields_of
 from .states import FrameState, State
 from .stroke_menu import Menu, menu_masks
 
@@ -180,10 +180,9 @@ class Tables(ABC):
         self.reals = self.REALS
         self.conditions = np.empty((0, CONDITIONS))
         options, self.cues, errors, self.phys = rules.pack()
-        self._errors: tuple[Errors, ...] = (
-            Errors.of(rules.noise, rules.physics, rules.speeds),
-        )  # of each seat
-        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)  # of each seat
+        # of each seat
+        self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics, rules.speeds),)
+        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
@@ -221,12 +220,12 @@ class Tables(ABC):
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
-    def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
-        """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
+    def infos(self, reals: Floats, counts: Ints, present: Bools | None = None) -> dict[str, Any]:
+        """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for, or all."""
+        present = np.ones(self.n, np.bool_) if present is None else present
         every = zip((*self.reals, *self.COUNTS), (*reals.T, *counts.T), strict=True)
         infos: dict[str, Any] = {name: column * present for name, column in every}
-        infos |= {name: infos[name] != 0 for name in self.FLAGS}
-        infos["foul"] = infos["fouls"] != 0
+        infos |= {name: infos[name] != 0 for name in self.FLAGS} | {"foul": infos["fouls"] != 0}
         return infos | {f"_{name}": present.copy() for name in infos}
 
     def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
@@ -234,12 +233,12 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": self.shot(k, buffers, j), "cue": strike_of(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        who = {"cue_kind": self.rules.cue, "noise": self.noise_of(seen[stroke.PLAYER])}
-        return Played(**shot, **who, **balls, **after, **judgement_of(seen), **standing)
+        shot, who = self.shot(k, buffers, j), self.noise_of(seen[stroke.PLAYER])
+        own = {"shot": shot, "cue_kind": self.rules.cue, "noise": who}
+        return Played(**own, **balls, **after, **fields_of(buffers, j), **standing)
 
     def noise_of(self, player: int) -> Noise:
         """The errors of a player."""
@@ -276,8 +275,7 @@ class Tables(ABC):
             masks[which] = self.action_masks(which)
 
     def show_strokes(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
-        """Write what ``player`` foresees of the strokes on the menus of the tables ``which`` into ``rows[at]``, which hold the
-        flat observation; nothing unless that is observed."""
+        """With ``observation="strokes"`` write what ``player`` foresees of the menus of the tables ``which`` into ``rows[at]``."""
         if self.rules.observation == "strokes":
             tables = self.positions, self.on_table, self.game
             law = self.rules.rule_set.code, self.cues, self.phys, *self.rules.fidelity
@@ -368,9 +366,8 @@ class Tables(ABC):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """One step of all tables: checked actions (n, k) float64, results into ``out``. ``waiting`` (n,)
-        bool: tables that begin a new episode instead; ``same_step``: those that end begin one at once.
-        SimulationError if a shot cannot be computed: its balls are left as they lay."""
+        """One step of all tables: checked actions (n, k) float64, results into ``out``. Tables ``waiting`` (n,) begin a new episode
+        instead; with ``same_step`` those that end begin one at once. After SimulationError a shot's balls lie as before."""
 
     @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
@@ -406,13 +403,11 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner,
-        and of frames frame."""
+        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner, and of frames frame."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on, and
-        the constants are to be drawn once it has its seed."""
+        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on; the caller draws constants."""
 
     @abstractmethod
     def text(self, k: int) -> str:

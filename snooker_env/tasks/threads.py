@@ -9,8 +9,7 @@ from .._lib.types import Ints
 from .stroke import ShotBuffers
 from .tables import Crew, Task, Watch
 
-CHUNK = 128
-"""Most tables in one call: few enough for the work space to stay in the cache, enough to make calls cheap."""
+CHUNK = 128  # most tables in one call: few enough for the work space to stay in the cache, enough to make calls cheap
 LEAST = 8  # smallest number of tables for which another thread or chunk is worth its cost
 
 

@@ -1,5 +1,4 @@
-"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance: a
-step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new ones ``deal_tables`` and ``_begin``."""
+"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance."""
 
 from collections.abc import Mapping
 from typing import Any

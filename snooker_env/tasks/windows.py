@@ -1,15 +1,13 @@
-"""In which directions does the cue ball meet a ball on first? Windows between tangents, exact for straight
-lines.
+"""In which directions does the cue ball meet a ball on first? Windows between tangents, exact for straight lines.
 
-What is met first can change only at the tangents of the balls and where the cue ball would meet a ball on and
-another at once; so one direction of each interval tells. A ball on that touches the cue ball counts as struck
-when it is played away: then every direction away from the touching balls is open."""
+What is met first changes only at the tangents of the balls and where the cue ball meets a ball on and another at once:
+one direction of each interval tells. A touching ball on counts as struck in every direction away from touching balls."""
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
 from .._lib.jit import kernel
 from ..game.balls import N_BALLS
-from ..game.first_contact import find_first_ball
+from ..game.paths import find_first_ball
 from ..geometry import BALL_RADIUS
 
 LOW, HIGH, EDGE = range(3)

@@ -118,10 +118,8 @@ def test_two_nodes_play_every_kind_of_player(where, folder, monkeypatch):
 def test_frames_of_self_play_are_the_same(where):
     shared = {"options": {"cue": "real", "max_strokes": 6}, "layers": None, "chance": None}
     shared |= {"budget": 30, "explore": 0.2, "replies": False}
-    parts = [
-        (shared, {"noise": LEVELS["professional"].scale(2.0), "seed": k, "many": 2, "other": None})
-        for k in (3, 5)
-    ]
+    noise = LEVELS["professional"].scale(2.0)
+    parts = [(shared, {"noise": noise, "seed": k, "many": 2, "other": None}) for k in (3, 5)]
     for one, other in zip(*(in_order(w.play_parts(frames, parts)) for w in (where, Here())), strict=True):
         assert all(np.array_equal(one[name], other[name]) for name in other)
 
@@ -175,6 +173,5 @@ def test_an_address_without_a_head_is_one_line(command, arguments, capsys):
         port = free.getsockname()[1]
     assert command.main([*arguments, f"127.0.0.1:{port}"]) == 1
     said = [line for line in capsys.readouterr().err.splitlines() if "ray" in line]
-    assert (
-        len(said) == 1 and f"ray = '127.0.0.1:{port}': must be the head of a running Ray cluster" in said[0]
-    )
+    assert len(said) == 1
+    assert f"ray = '127.0.0.1:{port}': must be the head of a running Ray cluster" in said[0]

@@ -23,10 +23,8 @@ class OneByOne(VectorEnv):
         self.limit, self.num_envs, self.mode = max_episode_steps, n, AutoresetMode(mode)
         self.envs = singles = [SnookerEnv(**options) for _ in range(n)]
         self.steps = [0] * n
-        self.single_observation_space, self.single_action_space = (
-            singles[0].observation_space,
-            singles[0].action_space,
-        )
+        self.single_observation_space = singles[0].observation_space
+        self.single_action_space = singles[0].action_space
         self.observation_space = batch_space(self.single_observation_space, n)
         self.action_space = batch_space(self.single_action_space, n)
         self.seen, self.done = [None] * n, np.zeros(n, bool)

@@ -19,9 +19,8 @@ from tests.tables import acting, begun, jsonable, plain
 
 def policy(observation, rng):
     """An opponent in Python that draws from its generator and reads its observation."""
-    return np.clip(
-        rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0
-    )
+    drawn = rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0)
+    return np.clip(drawn + 0.01 * observation[0], -1.0, 1.0)
 
 
 TARGET = {"aim": "target"}
@@ -30,12 +29,11 @@ SEEN = {"conditions": "drawn", "observe_conditions": True}
 SAID = {"says": ["nominate", "concede", "claim", "lot"]}
 FULL = TARGET | {"noise": "club", "placement": True, "says": ["decision"]}
 FRAME = FULL | {"task": "frame"}
+LONG = {"layout": "break_off", "placement": True, "elevation": True}
 VISITS = {
     "pots, a real cue": {"noise": "club", "cue": "real", "layout": "random:5"},
     "errors": TARGET | {"noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
-    "long actions": TARGET
-    | {"layout": "break_off", "placement": True, "elevation": True, "observation": "balls"}
-    | {"reward": "pots"},
+    "long actions": TARGET | LONG | {"observation": "balls", "reward": "pots"},
     "other worlds": TARGET
     | {"noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"},
     "a limit": TARGET | {"max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
@@ -44,26 +42,25 @@ VISITS = {
     "kicks, drawn tables": TARGET | SEEN | {"noise": {"aim_deg": 0.3, "kick": 0.3}, "layout": "colours"},
     "snookered": {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
 }
+GHOST, SHORT = {"opponent": "ghost_ball"}, {"task": "frame", "max_strokes": 20}
+OUT = {"game": "shoot_out", "says": ["decision", "lot"]}
 FRAMES = {
     "alone": {"task": "frame", "layout": "random:1", "miss": "attempt", "max_strokes": 25} | TARGET,
     "one stroke": {"task": "frame", "opponent": "random", "one_stroke": True, "layout": "safety"},
     "random": FRAME | {"opponent": "random", "layout": "break_off", "miss": "clear_path"},
-    "ghost_ball": FRAME
-    | {"opponent": "ghost_ball", "layout": "random:1", "observation": "balls", "reward": "win"},
+    "ghost_ball": FRAME | GHOST | {"layout": "random:1", "observation": "balls", "reward": "win"},
     "in Python": FRAME | {"opponent": acting(policy), "layout": "random:0", "max_strokes": 15},
     "a pool": FRAME | {"opponent": OpponentPool(["random", "ghost_ball"]), "layout": "random:2"},
-    "a search, drawn tables": {"task": "frame", "opponent": "best_pot_8", "noise": "club", "max_strokes": 12}
-    | SEEN,
+    "a search, drawn tables": SEEN | SHORT | {"opponent": "best_pot_8", "noise": "club", "max_strokes": 12},
     "masks, all said": MASKED
     | SAID
-    | {"task": "frame", "opponent": "ghost_ball", "layout": "random:1", "miss": "clear_path"}
-    | {"max_strokes": 20, "cue": "real"},
+    | GHOST
+    | SHORT
+    | {"layout": "random:1", "miss": "clear_path", "cue": "real"},
     "six-red": FRAME | {"game": "six_red", "opponent": "random", "miss": "attempt"},
-    "Shoot Out": FRAME
-    | {"game": "shoot_out", "opponent": "random", "says": ["decision", "lot"], "time_to_play": 12.0},
+    "Shoot Out": FRAME | OUT | {"opponent": "random", "time_to_play": 12.0},
     "flight": FRAME | {"layout": "random:2", "physics": {"flight": True}, "elevation": True},
-    "a match": FRAME
-    | {"task": "match", "frames": 3, "layout": "pots:easy", "opponent": "ghost_ball", "max_strokes": 60},
+    "a match": FRAME | GHOST | {"task": "match", "frames": 3, "layout": "pots:easy", "max_strokes": 60},
 }
 KINDS = VISITS | FRAMES
 
@@ -83,12 +80,8 @@ def some_actions(options, shape, masks, rng):
 
 
 EVERY_MODE = ("a limit", "masks", "ghost_ball")
-CASES = [
-    (kind, mode)
-    for k, kind in enumerate(KINDS)
-    for j, mode in enumerate(MODES)
-    if kind in EVERY_MODE or k % 3 == j
-]
+EACH = [(k % 3, kind, j, mode) for k, kind in enumerate(KINDS) for j, mode in enumerate(MODES)]
+CASES = [(kind, mode) for k, kind, j, mode in EACH if kind in EVERY_MODE or k == j]
 
 
 @pytest.mark.parametrize(("kind", "mode"), CASES)
@@ -179,9 +172,10 @@ def test_every_state_and_every_copy_goes_on_as_the_same(kind):
             rows = many.step(np.stack([action] * 2))
             seen, reward, *_ = goes_on(env, other, action)
             assert rows[1].tolist() == [reward] * 2
-            assert [one | {"rng": 0} for one in plain(many.get_state())] == [
-                plain(env.get_state()) | {"rng": 0}
-            ] * 2
+            both, mine = (
+                [one | {"rng": 0} for one in plain(each)] for each in (many.get_state(), [env.get_state()])
+            )
+            assert both == mine * 2
             for twin in twins:
                 assert twin.tables.rules.plan.tables is env.tables.rules.plan.tables  # the bank is not copied
                 twin.step(action)
@@ -190,19 +184,18 @@ def test_every_state_and_every_copy_goes_on_as_the_same(kind):
 
 # Two players
 
-PLAIN = FULL | {"layout": "random:1"}
+PLAIN, COLOURS = FULL | {"layout": "random:1"}, {"layout": "colours", "miss": "attempt"}
 EVERYTHING = ["nominate", "decision", "concede", "claim", "lot"]
 PAIRS = {
     "misses": PLAIN | {"layout": "random:2", "miss": "clear_path", "reward": "win", "observation": "balls"},
     "everything said": PLAIN | {"says": EVERYTHING, "miss": "clear_path"},
     "a match": PLAIN | {"says": EVERYTHING, "task": "match", "frames": 3, "layout": "random:0"},
-    "frames of a match": PLAIN
-    | {"layout": "colours", "reward": "frames", "miss": "attempt", "task": "match", "frames": 5},
+    "frames of a match": PLAIN | COLOURS | {"reward": "frames", "task": "match", "frames": 5},
     "masks": MASKED | SAID | {"noise": "amateur", "task": "match", "frames": 3, "layout": "random:1"},
     "masks, six-red": MASKED | {"game": "six_red", "miss": "clear_path", "says": ["nominate"]},
     "masks, drawn and seen": MASKED | SEEN | {"cue": "real"},
     "masks, other errors": MASKED | {"layout": "random:1", "seats": ({}, {"noise": "amateur"})},
-    "Shoot Out": PLAIN | {"game": "shoot_out", "layout": "random:2", "says": ["decision", "lot"]},
+    "Shoot Out": PLAIN | OUT | {"layout": "random:2"},
     "position": FULL | {"says": ["decision", "lot"], "miss": "clear_path"},
 }
 
@@ -227,11 +220,9 @@ def test_two_players_on_many_tables_play_as_in_a_match_alone(kind):
     ends = 0
 
     def row(observations, k):
-        return (
-            {name: each[k] for name, each in observations.items()}
-            if "observation" in options
-            else observations[k]
-        )
+        if "observation" in options:
+            return {name: each[k] for name, each in observations.items()}
+        return observations[k]
 
     for step in range(70):
         both = [tables.observe(player) for player in range(2)]
@@ -302,10 +293,10 @@ def test_a_frame_between_two_players_goes_as_against_an_opponent(kind, monkeypat
             shown, paid = [*shown, one], paid + reward
         assert not actions[0] or same(shown, seen)
         assert paid == total and terminated == match.terminations[PLAYERS[0]] != truncated
-        ends = [
-            json.dumps({k: v for k, v in one.get_state().items() if k not in ("unpaid", "due")})
-            for one in (env, match)
-        ]
+        states = (
+            {k: v for k, v in one.get_state().items() if k not in ("unpaid", "due")} for one in (env, match)
+        )
+        ends = [json.dumps(state) for state in states]
         assert ends[0] == ends[1]
         told = match.infos[PLAYERS[0]]
         names = {"score", "opponent_score", "winner", "frames_won", "strokes", "frame"} & set(told)
@@ -337,6 +328,5 @@ def test_a_mask_resets_only_those():
         assert same(env.reset(seed=1), other.reset(seed=1))
         assert same(env.step(np.zeros((6, 4))), other.step(np.zeros((6, 4))))
         mask = np.array([True, False, True, False, False, True])
-        assert same(*(each.reset(seed=20, options={"reset_mask": mask.copy()}) for each in (env, other))), (
-            mode
-        )
+        some = (each.reset(seed=20, options={"reset_mask": mask.copy()}) for each in (env, other))
+        assert same(*some), mode

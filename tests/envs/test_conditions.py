@@ -90,10 +90,10 @@ def test_shots_have_the_constants_of_their_table():
     v, w = sn.strike(0.2 + 0.75 * 6.8, direction, 0.0, 0.05, physics=env.physics)
     velocities, spins = np.zeros((22, 2)), np.zeros((22, 3))
     velocities[0], spins[0] = v[:2], w
-    ends = [
-        sn.simulate(start, velocities, spins, physics=physics, on_table=here).positions
-        for physics in (env.physics, sn.Physics())
-    ]
+    shots = (
+        sn.simulate(start, velocities, spins, physics=p, on_table=here) for p in (env.physics, sn.Physics())
+    )
+    ends = [shot.positions for shot in shots]
     assert np.allclose(ends[0], shot.positions, atol=1e-9) and np.abs(ends[1] - ends[0]).max() > 1e-3
 
 

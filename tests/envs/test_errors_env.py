@@ -236,10 +236,9 @@ def test_rounding_outside_the_bounds_is_clipped_and_more_is_refused(way, compone
         assert WAYS[way](np.array(action(end * 1.0000005), np.float32)) == at_the_end  # as of a network
         if component < 3 and way != "SB3":  # nor is it deaf; SB3 deals a new table after a miss
             assert WAYS[way](action(end * 0.99)) != at_the_end
+    says = r"must be finite and within \[-1, 1\]; gymnasium\.wrappers\.ClipAction"
     for wrong in (1.0000011, -1.0000011, NAN):
-        with pytest.raises(
-            ValueError, match=r"must be finite and within \[-1, 1\]; gymnasium\.wrappers\.ClipAction"
-        ):
+        with pytest.raises(ValueError, match=says):
             WAYS[way](action(wrong))
 
 
@@ -298,9 +297,8 @@ def test_wrong_states_and_options_of_reset():
         "frame": SnookerEnv(task="frame", opponent="random"),
         "many": begun(SnookerVectorEnv(2)),
     }
-    refuse_each(
-        RESETS, {"np": np} | {name: (lambda o, one=one: one.reset(options=o)) for name, one in envs.items()}
-    )
+    ways = {name: (lambda o, one=one: one.reset(options=o)) for name, one in envs.items()}
+    refuse_each(RESETS, {"np": np} | ways)
     assert env.get_state() == was
     for seed in (-1, "x", 1.5):
         with pytest.raises((gymnasium.error.Error, ValueError, TypeError)):

@@ -62,9 +62,8 @@ def test_each_stroke_is_read_alike():
     swapped = seen.clone()
     swapped[:, : 108 * 23] = seen[:, : 108 * 23].view(5, 108, 23)[:, order].reshape(5, -1)
     (logits, position), (logits2, position2) = net(seen), net(swapped)
-    assert torch.allclose(logits[:, order], logits2, atol=1e-6) and torch.allclose(
-        position, position2, atol=1e-5
-    )
+    assert torch.allclose(logits[:, order], logits2, atol=1e-6)
+    assert torch.allclose(position, position2, atol=1e-5)
     assert logits.shape == (5, 108) and torch.equal(net.forward_actor(seen), logits)
     assert torch.equal(net.forward_critic(seen), position)
 

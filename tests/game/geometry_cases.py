@@ -4,10 +4,19 @@ import numpy as np
 
 from snooker_env.game.balls import CLEARANCE, CUE, N_BALLS, NAMES, SPOTS, colour, mask_of
 from snooker_env.game.snookered import is_snookered
-from snooker_env.game.spotting import spot_colours
+from snooker_env.game.spotting import spot
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
+from tests.kernels import from_python
 
 ABOUT = "id kind title rule confidence note expect "
+_SPOT = from_python(spot)
+
+
+def spot_colours(positions, on_table, mask):
+    """New ``positions`` and ``on_table`` with the colours of ``mask`` spotted."""
+    placed, present = positions.copy(), on_table.copy()
+    _SPOT(placed, present, mask, BALL_RADIUS)
+    return placed, present
 
 
 def unknown(given, known):

@@ -59,9 +59,8 @@ def test_shots_off_cushions_against_dense_sampling():
         shot = sn.simulate(positions, velocities, spins, on_table=on_table)
         hits = shot.events[(shot.events["kind"] == 0) & (shot.events["i"] == CUE)]
         until = hits["time"][0] if len(hits) else shot.duration
-        got = closest_approach(
-            shot.segments, len(shot.segments), until, positions, on_table, mask_of([1, 2]), R
-        )
+        path = shot.segments, len(shot.segments), until
+        got = closest_approach(*path, positions, on_table, mask_of([1, 2]), R)
         assert got == pytest.approx(sampled_gap(shot.segments, until, positions[[1, 2]]), abs=2e-4)
         if len(hits) and hits["j"][0] in (1, 2):
             assert abs(got) < 1e-9
@@ -77,10 +76,8 @@ def test_shots_off_cushions_against_dense_sampling():
 def ring(radius, at=(0.0, 0.0), turn=0.0, balls=range(YELLOW, N_BALLS)):
     """Balls evenly around a place, the first of them in the direction ``turn``."""
     angles = turn + 2 * np.pi * np.arange(len(balls)) / len(balls)
-    return {
-        i: (at[0] + radius * np.cos(a), at[1] + radius * np.sin(a))
-        for i, a in zip(balls, angles, strict=True)
-    }
+    each = zip(balls, angles, strict=True)
+    return {i: (at[0] + radius * np.cos(a), at[1] + radius * np.sin(a)) for i, a in each}
 
 
 def is_shut_in(places, on):

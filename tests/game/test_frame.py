@@ -43,10 +43,10 @@ def last(ball_on, scores=(0, 0), **more):
 def test_play_takes_the_free_ball_play_again_voids_it_and_neither_is_taken_back():
     foul = played(Frame.start(), Stroke(snookered=True))
     assert foul.free_ball
-    mine, his = foul.choose("play"), foul.choose("play_again")
-    assert (mine.striker, mine.free_ball, his.striker, his.free_ball) == (1, True, 0, False)
+    mine, theirs = foul.choose("play"), foul.choose("play_again")
+    assert (mine.striker, mine.free_ball, theirs.striker, theirs.free_ball) == (1, True, 0, False)
     assert played(mine, pot(BLACK, nominated=BLACK)).scores == (0, 5)
-    assert played(his, pot(1)).scores == (1, 4)
+    assert played(theirs, pot(1)).scores == (1, 4)
     foul = played(Frame.start(), MISSED)
     with pytest.raises(ValueError, match="choice"):
         foul.play(MISSED)

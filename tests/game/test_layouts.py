@@ -98,9 +98,8 @@ def test_no_pot_is_on_where_a_safety_is_asked_for(name):
     assert 0.05 < chances.max() <= LIKELY
     assert at.on_table[:, [0, *range(YELLOW, 22)]].all() and (at.on_table[:, 1:YELLOW].sum(axis=1) >= 3).all()
     for positions, on_table in zip(at.positions, at.on_table, strict=True):
-        assert (
-            np.array_equal(positions[~on_table], SPOTS[~on_table]) and gaps(positions, on_table).min() > -1e-6
-        )
+        assert np.array_equal(positions[~on_table], SPOTS[~on_table])
+        assert gaps(positions, on_table).min() > -1e-6
         assert not is_snookered(positions, on_table, 0xFFFE)[0]
 
 
@@ -116,9 +115,8 @@ def test_an_escape_is_from_a_snooker(name, seed):
 def test_no_stored_table_is_of_both_parts(name):
     tables, (trained, held_out) = bank(name), split_bank(name)
     assert len(held_out) == BANKS[name] and trained.stop == held_out.start and trained.start == 0
-    cues = [
-        np.sort(np.abs(tables[part.start : part.stop, 0]).round(7), axis=1) for part in (trained, held_out)
-    ]
+    parts = (np.abs(tables[part.start : part.stop, 0]).round(7) for part in (trained, held_out))
+    cues = [np.sort(part, axis=1) for part in parts]
     assert not set(map(tuple, cues[0].tolist())) & set(map(tuple, cues[1].tolist()))
 
 
@@ -132,9 +130,8 @@ def test_a_stored_table_is_dealt_as_it_is_or_mirrored():
             same = (plan.tables[split_bank("safety")[1]][:, on_table] == made[on_table]).all((1, 2))
             if same.any():
                 seen.add(mirrored)
-                assert np.array_equal(
-                    on_table, ~np.isnan(plan.tables[split_bank("safety")[1]][same][0, :, 0])
-                )
+                stored = plan.tables[split_bank("safety")[1]][same][0, :, 0]
+                assert np.array_equal(on_table, ~np.isnan(stored))
                 break
         else:
             raise AssertionError(seed)

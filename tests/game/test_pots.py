@@ -43,18 +43,12 @@ def plainly(positions, on_table, on):
             ghost = b - d * way
             path = np.hypot(*(ghost - cue))
             cut = (ghost - cue) @ way / path
-            angles, widths = (
-                (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if POCKET_AIMS[k, 4] else (_CORNER_ANGLE, _CORNER_WINDOW)
-            )
+            middle, corner = (_MIDDLE_ANGLE, _MIDDLE_WINDOW), (_CORNER_ANGLE, _CORNER_WINDOW)
+            angles, widths = middle if POCKET_AIMS[k, 4] else corner
             width = np.interp(np.degrees(np.arccos(np.clip(way @ axis, -1.0, 1.0))), angles, widths)
             inside = (np.abs(ghost) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS + 1e-9).all()
-            if (
-                width > 0.0
-                and cut >= 0.05
-                and inside
-                and clear(b, pocket, ball, d)
-                and clear(cue, ghost, ball, d * (1.0 - 1e-9))
-            ):
+            free = clear(b, pocket, ball, d) and clear(cue, ghost, ball, d * (1.0 - 1e-9))
+            if width > 0.0 and cut >= 0.05 and inside and free:
                 found.append((width / (2.0 * run) * d * cut / path, ball, k, *ghost, cut))
     return sorted(found, reverse=True)
 
@@ -71,9 +65,8 @@ def test_short_cuts_leave_no_pot_out():
         on = int(rng.choice([mask_of(range(1, 16)), mask_of(range(16, 22)), mask_of([17])]))
         expected = plainly(positions, on_table, on)
         found = pots(positions, on_table, on)
-        assert [(int(p[POT_BALL]), int(p[POT_POCKET])) for p in found] == [
-            (ball, k) for _, ball, k, *_ in expected
-        ]
+        pairs = [(int(p[POT_BALL]), int(p[POT_POCKET])) for p in found]
+        assert pairs == [(ball, k) for _, ball, k, *_ in expected]
         if expected:
             columns = np.array([(x, y, cut, width) for width, _, _, x, y, cut in expected])
             assert np.allclose(found[:, GHOST_X:], columns, rtol=1e-9, atol=1e-12)

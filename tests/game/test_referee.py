@@ -41,9 +41,8 @@ def rule(ball_on="RED", on_table=None, *, free_ball=False, lead=0, **seen):
     for name in MASKS:
         if name in seen:
             seen[name] = mask_of([seen[name]] if isinstance(seen[name], int) else seen[name])
-    return judge(
-        Situation(on_table=mask_of(on_table), ball_on=on, free_ball=free_ball, lead=lead), Stroke(**seen)
-    )
+    situation = Situation(on_table=mask_of(on_table), ball_on=on, free_ball=free_ball, lead=lead)
+    return judge(situation, Stroke(**seen))
 
 
 def assert_fair(verdict, points, ball_on, stays):
@@ -101,9 +100,8 @@ def strokes(draw):
     free_ball = ball_on != BallOn.ANY_COLOUR and draw(st.booleans())
     rules, lead = draw(st.sampled_from(RULES)), draw(st.integers(-10, 10))
     situation = Situation(on_table=on_table, ball_on=ball_on, free_ball=free_ball, lead=lead, rules=rules)
-    return situation, Stroke(
-        first=first, touching=touching, moved=moved, potted=potted, off=draw(some) & ~potted, **flags
-    )
+    seen = {"first": first, "touching": touching, "moved": moved, "potted": potted}
+    return situation, Stroke(**seen, off=draw(some) & ~potted, **flags)
 
 
 @settings(max_examples=200, deadline=None)
@@ -133,19 +131,16 @@ def test_a_table_is_settled_as_the_referee_says():
     rng = np.random.default_rng(0)
     for _ in range(50):
         positions, on_table = layouts.layout("random:5", rng)
-        situation = Situation(
-            on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn(int(rng.integers(0, 2)))
-        )
+        there = mask_of(np.flatnonzero(on_table))
+        situation = Situation(on_table=there, ball_on=BallOn(int(rng.integers(0, 2))))
         balls = [0, *range(1, 6), *range(YELLOW, 22)]
         potted = mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False))
         stroke = Stroke(first=1 << int(rng.choice(balls[1:])), potted=potted)
         verdict, placed, left = settle_table(positions, on_table, situation, stroke)
         assert replace(verdict, free_ball=False) == replace(judge(situation, stroke), free_ball=False)
         assert mask_of(np.flatnonzero(left)) & ~1 == verdict.on_table
-        hidden = (
-            not left[0]
-            or is_snookered(placed, left, mask_of(ids_of(balls_on(verdict.ball_on, verdict.on_table))))[0]
-        )
+        on = mask_of(ids_of(balls_on(verdict.ball_on, verdict.on_table)))
+        hidden = not left[0] or is_snookered(placed, left, on)[0]
         assert not verdict.free_ball or (verdict.fouls and hidden)
     with pytest.raises(ValueError, match="on_table"):
         settle_table(positions, ~on_table, situation, stroke)

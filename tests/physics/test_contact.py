@@ -39,10 +39,8 @@ def depth(table, place, R):
     for x, y, radius, ux, uy, cos_half in table.jaws:
         half = np.arccos(cos_half)
         turn = np.arctan2(uy, ux) + np.linspace(-half, half, 2 + int(2 * half * radius / 1e-5))
-        deepest = max(
-            deepest,
-            R - np.hypot(x + radius * np.cos(turn) - place[0], y + radius * np.sin(turn) - place[1]).min(),
-        )
+        dx, dy = x + radius * np.cos(turn) - place[0], y + radius * np.sin(turn) - place[1]
+        deepest = max(deepest, R - np.hypot(dx, dy).min())
     return deepest
 
 
@@ -67,16 +65,14 @@ def test_balls_held_at_the_boundary_keep_every_law(name):
         physics = sn.Physics.preset("match", **{"R": 0.02625} | table.ball)
         p = fuzz.layouts(rng, "held", 1 + k % 2, table, R=physics.R)
         v, w = fuzz.motions(rng, "held", p, physics.R)
-        found = invariants.play(
-            (p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard")
-        )
+        shots = p, v, w, np.ones(p.shape[:2], bool)
+        found = invariants.play(shots, physics, table, contact.parse_fidelity("standard"))
         assert (found.status == Status.OK).all()
         assert (found.worst <= fuzz.allowed("standard")).all()
 
 
-OPEN = Table(
-    "open", np.array([(0, 1, 0.5, -0.2, 0.2), (1, 1, 1.0, -1.0, 1.0)]), np.zeros((0, 6)), np.zeros((0, 3))
-)
+NOSES = np.array([(0, 1, 0.5, -0.2, 0.2), (1, 1, 1.0, -1.0, 1.0)])
+OPEN = Table("open", NOSES, np.zeros((0, 6)), np.zeros((0, 3)))
 """A nose with nothing beyond its ends."""
 
 

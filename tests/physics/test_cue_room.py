@@ -29,9 +29,8 @@ NONE = np.empty(0)
 
 def least(tip, aim, positions, rails=RAILS, elevation=0.0):
     positions = np.array(positions, float)
-    return _LEAST(
-        (*map(float, tip), float(aim), float(elevation)), positions, np.ones(len(positions), bool), rails, R
-    )
+    stroke, here = (*map(float, tip), float(aim), float(elevation)), np.ones(len(positions), bool)
+    return _LEAST(stroke, positions, here, rails, R)
 
 
 def in_room(stroke, positions, rails=RAILS):
@@ -90,14 +89,10 @@ def test_what_is_done_to_a_stroke_is_what_is_said():
         stroke = (2.0, *tip_of(rng), np.pi + rng.uniform(-1.0, 1.0), rng.choice([0.0, 0.2]))
         played, done = in_room(stroke, positions)
         speed, side, top, aim, elevation = played
-        assert (
-            (speed, aim) == (stroke[0], stroke[3])
-            and elevation >= stroke[4]
-            and np.hypot(side, top) < 0.5 + 1e-9
-        )
-        assert bool(done & RAISED) == (elevation > stroke[4]) and bool(done & MOVED) == (
-            (side, top) != stroke[1:3]
-        )
+        assert (speed, aim) == (stroke[0], stroke[3]) and elevation >= stroke[4]
+        assert np.hypot(side, top) < 0.5 + 1e-9
+        assert bool(done & RAISED) == (elevation > stroke[4])
+        assert bool(done & MOVED) == ((side, top) != stroke[1:3])
         assert done != FREE or played == stroke
         needed = min(least((side, top), aim, positions, elevation=stroke[4]), MAX_ELEVATION)
         assert elevation == pytest.approx(needed, abs=1e-9)
@@ -136,9 +131,8 @@ def test_what_the_cue_passes_over_is_what_lets_it_down_when_it_is_gone():
             without = on.copy()
             without[over] = False
             assert lie(without) < lie(on)
-            assert behind == pytest.approx(
-                -(positions[over] - positions[0]) @ [np.cos(straight), np.sin(straight)]
-            )
+            along = [np.cos(straight), np.sin(straight)]
+            assert behind == pytest.approx(-(positions[over] - positions[0]) @ along)
         seen[min(over, 1)] += 1
         seen[MOVED] += bool(done & MOVED)
     assert min(seen.values()) > 50, seen

@@ -17,9 +17,8 @@ def put(x, y):
 
 def three(**second):
     """Three tables, of which the second has other arrays."""
-    return batch(
-        **{name: [refusals.HERE[name], value, refusals.HERE[name]] for name, value in second.items()}
-    )
+    here = refusals.HERE
+    return batch(**{name: [here[name], value, here[name]] for name, value in second.items()})
 
 
 def moved(t):
@@ -202,10 +201,8 @@ def test_what_is_no_vector_of_an_impact():
         for field in fields:
             refuse_each(VECTORS.replace("call", call).replace("field", field), NAMES)
         refuse_each(NORMALS.replace("call", call), NAMES)
-    line = (
-        'impact(v1=?) | v1 | ? | must be real numbers of shape (3,) | ["1", "0", "0"]; [True, False, False]'
-    )
-    refuse_each(line, NAMES)
+    allowed = "must be real numbers of shape (3,)"
+    refuse_each(f'impact(v1=?) | v1 | ? | {allowed} | ["1", "0", "0"]; [True, False, False]', NAMES)
 
 
 @pytest.mark.parametrize(("call", "fields"), [(impact, ("v1", "w1", "v2", "w2")), (cushion, ("v", "w"))])
@@ -236,9 +233,8 @@ def test_wrong_values(table):
 def test_what_is_no_number():
     for field in ("speed", "aim", "side", "top", "elevation"):
         refuse_each(NO_NUMBER.replace("field", field), NAMES)
-    constants = [
-        name for name, value in vars(sn.Physics()).items() if type(value) is float and name != "mu_bb"
-    ]
+    values = vars(sn.Physics()).items()
+    constants = [name for name, value in values if type(value) is float and name != "mu_bb"]
     assert len(constants) > 12
     for field in constants:
         refuse_each(NO_CONSTANT.replace("field", field), NAMES)
@@ -257,15 +253,10 @@ def test_physics_cannot_be_changed_and_its_range_ends_are_allowed():
 def test_balls_off_the_table_may_lie_anywhere():
     """What is not on the table is not looked at: no overlap, no place is wrong for it, and it stays where it
     is."""
-    places = [(0.0, 0.0), (0.0, 0.0), (5.0, 5.0)]
-    shot = sn.simulate(
-        places, [(0.0, 1.0), (9.0, 0.0), (0.0, 0.0)], np.zeros((3, 3)), on_table=[True, False, False]
-    )
-    assert shot.positions[1:].tolist() == [[0.0, 0.0], [5.0, 5.0]] and shot.on_table.tolist() == [
-        True,
-        False,
-        False,
-    ]
+    places, v = [(0.0, 0.0), (0.0, 0.0), (5.0, 5.0)], [(0.0, 1.0), (9.0, 0.0), (0.0, 0.0)]
+    shot = sn.simulate(places, v, np.zeros((3, 3)), on_table=[True, False, False])
+    assert shot.positions[1:].tolist() == [[0.0, 0.0], [5.0, 5.0]]
+    assert shot.on_table.tolist() == [True, False, False]
 
 
 def test_what_is_just_allowed_is_played():
@@ -288,10 +279,8 @@ def test_too_few_events_are_an_error_of_the_simulation_with_advice():
 
 def test_a_shot_inside_a_shot_has_its_own_log(monkeypatch):
     """As a signal handler or a trace function may start one: between the kernel and the copy of its log."""
-    first, other = (
-        ([(0.0, 0.0)], [(1.0, 0.2)], [(0.0, 0.0, 0.0)]),
-        ([(0.0, 0.5)], [(0.3, 2.0)], [(5.0, 0.0, 0.0)]),
-    )
+    first = ([(0.0, 0.0)], [(1.0, 0.2)], [(0.0, 0.0, 0.0)])
+    other = ([(0.0, 0.5)], [(0.3, 2.0)], [(5.0, 0.0, 0.0)])
     want, run = sn.simulate(*first), simulation._run
 
     def interrupted(*arguments, **more):
@@ -302,8 +291,5 @@ def test_a_shot_inside_a_shot_has_its_own_log(monkeypatch):
 
     monkeypatch.setattr(simulation, "_run", interrupted)
     got = sn.simulate(*first)
-    assert (
-        np.array_equal(got.events, want.events)
-        and np.array_equal(got.segments, want.segments)
-        and len(want.events) > 1
-    )
+    assert np.array_equal(got.events, want.events) and np.array_equal(got.segments, want.segments)
+    assert len(want.events) > 1

@@ -31,9 +31,8 @@ def one(place, velocity, spin=STILL, physics=FLYING, table: sn.Table | str | Non
 def test_a_rolling_ball_hops_off_a_full_ball_as_measured(speed, inches):
     """[TP B.5]: friction 0.06 and restitution 0.94."""
     physics = sn.Physics.preset("match", flight=True, mu_bb=0.06, e_b=0.94)
-    shot = sn.simulate(
-        [(0, 0), (0, 2 * R + 1e-4)], [(0, speed), (0, 0)], [(-speed / R, 0, 0), STILL], None, physics
-    )
+    balls = [(0, 0), (0, 2 * R + 1e-4)], [(0, speed), (0, 0)], [(-speed / R, 0, 0), STILL]
+    shot = sn.simulate(*balls, None, physics)
     heights = shot.at(np.linspace(0, 0.3, 3001))[0][..., 2].max(axis=0)
     assert heights[0] == pytest.approx(0.0254 * inches, rel=0.05)
     # the other ball was pressed by the same impulse: it leaves the bed at e_t of the speed
@@ -88,9 +87,8 @@ def test_where_no_ball_flies_nothing_changes():
         v, w = np.zeros((6, 2)), np.zeros((6, 3))
         v[0] = rng.normal(0, 0.5, 2)
         w[0, :2] = -v[0, 1] / R, v[0, 0] / R
-        flat, flying = (
-            sn.simulate(places, v, w, physics=sn.Physics.preset("match", flight=f)) for f in (False, True)
-        )
+        both = (sn.Physics.preset("match", flight=f) for f in (False, True))
+        flat, flying = (sn.simulate(places, v, w, physics=physics) for physics in both)
         if EventKind.LAND in flying.events["kind"]:
             continue
         assert np.array_equal(flat.positions, flying.positions) and flat.duration == flying.duration
@@ -103,9 +101,8 @@ def test_where_no_ball_flies_nothing_changes():
 def test_a_nose_turns_a_ball_in_the_air_up_or_down(height):
     """Below the nose's height it is driven down, above it is thrown up: a free sphere and a fixed edge."""
     still = sn.Physics.preset("match", flight=True, g=1e-3, mu_c=0.0)
-    shot = one(
-        (0.5, 0.5, height), (1.0, 0.0, 0.5 * still.g * 0.34), physics=still
-    )  # about as high where it meets the nose
+    # about as high where it meets the nose
+    shot = one((0.5, 0.5, height), (1.0, 0.0, 0.5 * still.g * 0.34), physics=still)
     met = shot.events[0]
     assert EventKind(met["kind"]) == EventKind.CUSHION
     sin_phi = (HIGH - height) / R
@@ -124,9 +121,8 @@ def test_a_ball_over_a_rail_bounces_there_or_leaves_the_table():
     assert shot.events[0]["time"] == pytest.approx(math.sqrt(2 * (0.2 - top) / G), rel=1e-12)
     assert shot.events["z"][0] == pytest.approx(top, abs=1e-12)
     far = one((HALF_WIDTH - 0.1, 0.3, 0.2), (3.0, 0.0, 0.5))
-    assert kinds(far) == ["OFF"] and far.duration == pytest.approx(
-        (0.1 + flight.RAIL - (R - R * math.sqrt(1 - 0.16))) / 3
-    )
+    assert kinds(far) == ["OFF"]
+    assert far.duration == pytest.approx((0.1 + flight.RAIL - (R - R * math.sqrt(1 - 0.16))) / 3)
 
 
 def test_balls_go_into_pockets_from_the_air_but_not_over_their_backs():
@@ -181,11 +177,8 @@ def past_the_edges(places, table, physics):
 def deepest(shot):
     """``past_the_edges`` of a shot of one ball, but for where it is over a pocket or gone [m]."""
     times = np.concatenate([np.linspace(0.0, min(shot.duration, 3.0), 1500), shot.events["time"]])
-    gone = [
-        t
-        for t, kind in shot.events[["time", "kind"]].tolist()
-        if EventKind(kind).name in ("DROP", "POT", "OFF")
-    ]
+    ends = {EventKind.DROP, EventKind.POT, EventKind.OFF}
+    gone = [t for t, kind in shot.events[["time", "kind"]].tolist() if kind in ends]
     times = times[times < min(gone, default=np.inf)]
     return past_the_edges(shot.at(times)[0][:, 0], shot.table, shot.physics).max() if len(times) else 0.0
 
@@ -238,11 +231,8 @@ def test_a_jaw_is_met_in_the_air_where_its_edge_is():
 def test_a_shot_goes_the_same_way_if_the_run_with_flight_plays_it_from_the_start(seed):
     """A far ball that is in the air for an instant sends the shot there at once; else it begins in the run without flight."""
     rng = np.random.default_rng(seed)
-    balls = [
-        (rng.uniform(-0.3, 0.3), -0.8),
-        *((x, y) for y in (0.1, 0.4) for x in (-0.2, 0.0, 0.15)),
-        (0.8, 1.7),
-    ]
+    rows = ((x, y) for y in (0.1, 0.4) for x in (-0.2, 0.0, 0.15))
+    balls = [(rng.uniform(-0.3, 0.3), -0.8), *rows, (0.8, 1.7)]
     places = np.column_stack([balls, np.zeros(len(balls))])
     velocities, spins = np.zeros((len(balls), 3)), np.zeros((len(balls), 3))
     aim = math.atan2(0.9, balls[2][0] - balls[0][0]) + rng.uniform(-0.04, 0.04)
@@ -250,9 +240,8 @@ def test_a_shot_goes_the_same_way_if_the_run_with_flight_plays_it_from_the_start
     ways = []
     for up in (0.0, 1e-12):
         velocities[-1, 2] = up
-        shot = sn.simulate(
-            places, velocities, spins, physics=sn.Physics.preset("match", flight=True), table="match"
-        )
+        flying = sn.Physics.preset("match", flight=True)
+        shot = sn.simulate(places, velocities, spins, physics=flying, table="match")
         ways.append((shot.positions, [tuple(one)[:4] for one in shot.events if len(balls) - 1 != one["i"]]))
     assert np.array_equal(ways[0][0], ways[1][0]) and ways[0][1] == ways[1][1]
     assert len(ways[0][1]) > 10

@@ -30,9 +30,8 @@ def physics_of(case):
 
 
 def play(case, fidelity, physics=None):
-    return sn.collide_balls(
-        case["v1"], case["w1"], case["v2"], case["w2"], case["normal"], physics or physics_of(case), fidelity
-    )
+    before = (case[name] for name in ("v1", "w1", "v2", "w2", "normal"))
+    return sn.collide_balls(*before, physics or physics_of(case), fidelity)
 
 
 def speed_of(case):
@@ -71,9 +70,8 @@ def test_euler_converges_to_reference_at_first_order():
     cases = impacts(60, seed=3)
     errors = []
     for n in (100, 1000, 10000):
-        errors.append(
-            np.mean([worst(play(c, f"euler:{n}"), play(c, "reference"), speed_of(c)) for c in cases])
-        )
+        worsts = [worst(play(c, f"euler:{n}"), play(c, "reference"), speed_of(c)) for c in cases]
+        errors.append(np.mean(worsts))
     orders = np.log10(np.array(errors[:-1]) / errors[1:])
     assert np.all((orders > 0.8) & (orders < 1.2)), (errors, orders)
 
@@ -84,18 +82,16 @@ def test_euler_converges_to_reference_at_first_order():
 
 def truth_of(case, mu_bb):
     c = case
-    return ball_ball(
-        c["v1"], c["w1"], c["v2"], c["w2"], c["normal"], R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"]
-    )
+    before = (c[name] for name in ("v1", "w1", "v2", "w2", "normal"))
+    return ball_ball(*before, R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"])
 
 
 def test_two_balls_part_as_the_oracle_says():
     cases = impacts(40, seed=7)
     truths = [truth_of(c, c["mu_bb"]) for c in cases]
     for fidelity, most in (("reference", 1e-9), ("standard", 1e-5)):
-        errors = [
-            worst(play(c, fidelity), truth, speed_of(c)) for c, truth in zip(cases, truths, strict=True)
-        ]
+        pairs = zip(cases, truths, strict=True)
+        errors = [worst(play(c, fidelity), truth, speed_of(c)) for c, truth in pairs]
         assert max(errors) < most
 
 
@@ -104,10 +100,8 @@ def test_standard_keeps_its_promise_on_many_impacts(preset):
     """Against ``reference``, itself held to the oracle above: 3,000 impacts, both balls moving in a third of
     them."""
     physics = sn.Physics.preset(preset)
-    errors = [
-        worst(play(c, "standard", physics), play(c, "reference", physics), speed_of(c))
-        for c in impacts(3000, seed=11)
-    ]
+    both = ((c, play(c, "standard", physics), play(c, "reference", physics)) for c in impacts(3000, seed=11))
+    errors = [worst(got, want, speed_of(c)) for c, got, want in both]
     assert np.quantile(errors, 0.99) < 1e-6
     assert max(errors) < 1e-5
 
@@ -118,13 +112,10 @@ def test_standard_keeps_its_promise_at_cushions(preset):
     promises less; each of these makes its tables."""
     errors = []
     for c in cushion_impacts(2000 if preset else 200, seed=7):
-        physics = (
-            sn.Physics.preset(preset) if preset else sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
-        )
-        found, truth = (
-            sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity)
-            for fidelity in ("standard", "reference")
-        )
+        own = {"e_c": c["e"], "mu_c": c["mu_w"], "mu_s": c["mu_s"]}
+        physics = sn.Physics.preset(preset) if preset else sn.Physics(**own)
+        before = c["v"], c["w"], c["normal"]
+        found, truth = (sn.collide_cushion(*before, physics, f) for f in ("standard", "reference"))
         errors.append(worst(found, truth, np.linalg.norm(c["v"])))
     assert np.quantile(errors, 0.99) < (1e-6 if preset else 1.3e-6)
     assert max(errors) < 1e-5
@@ -142,9 +133,8 @@ def test_cushion_agrees_with_the_oracle():
     errors = {"reference": [], "standard": []}
     for c in cushion_impacts(20, seed=7):
         physics = sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
-        truth = ball_cushion(
-            c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4
-        )
+        law = {"e": c["e"], "mu_w": c["mu_w"], "mu_s": c["mu_s"], "sin_theta": 0.4}
+        truth = ball_cushion(c["v"], c["w"], c["normal"], R=R, M=M, **law)
         for fidelity, found in errors.items():
             out = sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity)
             found.append(worst(out, truth, np.linalg.norm(c["v"])))
@@ -171,9 +161,8 @@ def test_fast_is_the_closed_form_of_tp_a14(kind, speed):
     for cut, want in zip(CUTS, THROW[kind, speed], strict=True):
         c = np.radians(cut)
         w1 = (0, speed / 0.0286, 0) if kind == "roll" else (0, 0, 0)
-        v2 = sn.collide_balls(
-            (speed, 0, 0), w1, (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, "fast"
-        )[2]
+        still, normal = (0, 0, 0), (np.cos(c), np.sin(c), 0)
+        v2 = sn.collide_balls((speed, 0, 0), w1, still, still, normal, physics, "fast")[2]
         assert cut - np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(want, abs=0.02)
 
 
@@ -190,9 +179,8 @@ def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
 
 def test_match_cushion_follows_the_measured_rebounds():
     """Fig. 7a of Mathavan 2010: 0.89 to 0.95 below 2 m/s, 0.80 at 3.4 m/s."""
-    ratio = [
-        -sn.collide_cushion((0, s, 0), (-s / R, 0, 0), (0, 1, 0), "match")[0][1] / s for s in (0.5, 1.5, 3.4)
-    ]
+    speeds = 0.5, 1.5, 3.4
+    ratio = [-sn.collide_cushion((0, s, 0), (-s / R, 0, 0), (0, 1, 0), "match")[0][1] / s for s in speeds]
     assert 0.89 < ratio[0] < 0.95
     assert 0.89 < ratio[1] < 0.95
     assert ratio[2] == pytest.approx(0.80, abs=0.02)
@@ -208,9 +196,8 @@ def test_no_closing_speed_changes_nothing(fidelity, closing):
     args = [np.array(a, float) for a in ((closing, 0.5, 0), (3, -4, 5), (0, -0.2, 0), (1, 2, 3))]
     for got, want in zip(sn.collide_balls(*args, (1, 0, 0), fidelity=fidelity), args, strict=True):
         assert (got == want).all()
-    for got, want in zip(
-        sn.collide_cushion(args[0], args[1], (1, 0, 0), fidelity=fidelity), args, strict=False
-    ):
+    after = sn.collide_cushion(args[0], args[1], (1, 0, 0), fidelity=fidelity)
+    for got, want in zip(after, args, strict=False):
         assert (got == want).all()
 
 

@@ -65,9 +65,8 @@ def ball_and_nose():
 def as_used(contact):
     """The slips and the load as the kernels compute them, symbolically."""
     contact = Contact(*(nsimplify(value, rational=True) for value in contact))
-    after = python_of(inertia.slips_after)(
-        Impulses(F1, F2, G1, G2, P, 0, LIFT), Slips(0, 0, 0, 0, 0), contact
-    )
+    impulses = Impulses(F1, F2, G1, G2, P, 0, LIFT)
+    after = python_of(inertia.slips_after)(impulses, Slips(0, 0, 0, 0, 0), contact)
     return [nsimplify(value, rational=True) for value in after], contact.n_p * P + contact.n_f * F2
 
 
@@ -83,11 +82,8 @@ def wrong(contact, derived):
     load = load.subs(LIFT, 0)  # a lifted ball has no load
     used, load_used = as_used(contact)
     names = (*Slips._fields, "load")
-    return [
-        n
-        for n, u, d in zip(names, (*used, load_used), (*slips, load), strict=True)
-        if simplify(expand(u - d)) != 0
-    ]
+    each = zip(names, (*used, load_used), (*slips, load), strict=True)
+    return [n for n, u, d in each if simplify(expand(u - d)) != 0]
 
 
 CASES = {"balls": (lambda: inertia.BALLS, two_balls), "cushion": (of_cushion, ball_and_nose)}

@@ -76,10 +76,8 @@ def energy(rows):
 
 def far(got, want):
     """Largest difference of velocities and R * spins."""
-    return max(
-        np.abs(np.subtract(a, b)).max() * (R if k % 2 else 1.0)
-        for k, (a, b) in enumerate(zip(got, want, strict=True))
-    )
+    each = enumerate(zip(got, want, strict=True))
+    return max(np.abs(np.subtract(a, b)).max() * (R if k % 2 else 1.0) for k, (a, b) in each)
 
 
 # impacts of two balls
@@ -118,9 +116,8 @@ def test_without_friction_e_is_the_ratio_of_parting_to_closing(case, e, fidelity
     out = sn.collide_balls(*case, {"mu_bb": 0.0, "e_b": e}, fidelity)
     # e^2 is what is solved for: near e = 0 the root of the tolerance
     tol = {"fast": 1e-12, "standard": 2e-5, "reference": 1e-7}[fidelity]
-    assert (out[2] - out[0]) @ n == pytest.approx(
-        e * (v1 - v2) @ n, abs=tol * (v1 - v2) @ n + 1e-13 * size_of(case)
-    )
+    allowed = tol * (v1 - v2) @ n + 1e-13 * size_of(case)
+    assert (out[2] - out[0]) @ n == pytest.approx(e * (v1 - v2) @ n, abs=allowed)
     assert far((out[1], out[1], out[3], out[3]), (w1, w1, w2, w2)) <= 1e-12 * size_of(case)
     along = 0.5 * (1 + e) * ((v1 - v2) @ n) * n
     assert far(out[::2], (v1 - along, v2 + along)) <= max(tol, 1e-12) * size_of(case)
@@ -248,24 +245,17 @@ def shots(draw, table=True, touching=True):
     the first is struck."""
     n = draw(st.integers(1, 6))
     shift = draw(st.tuples(st.floats(-0.2, 0.2), st.floats(-1.0, 1.0)))
-    p = (
-        PLACES[:n]
-        + [draw(st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))) for _ in range(n)]
-        + shift
-    )
+    near = st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))
+    p = PLACES[:n] + [draw(near) for _ in range(n)] + shift
     for k in range(2, n):
         if touching and draw(st.booleans()):
-            p[k] = (
-                p[k - 1]
-                + (np.nextafter(D, 1) + draw(st.sampled_from([0, 1e-12, 1e-9])))
-                * horizontal(draw(angles))[:2]
-            )
+            apart = np.nextafter(D, 1) + draw(st.sampled_from([0, 1e-12, 1e-9]))
+            p[k] = p[k - 1] + apart * horizontal(draw(angles))[:2]
     gaps = np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + np.eye(n)
     assume(gaps.min() >= D and (not table or np.abs(p[:, 0]).max() < 0.86))
     v, w = np.zeros((n, 2)), np.zeros((n, 3))
-    aim = np.arctan2(*(p[-1 if draw(st.booleans()) else min(1, n - 1)] - p[0])[::-1]) + draw(
-        st.floats(-0.1, 0.1)
-    )
+    target = p[-1 if draw(st.booleans()) else min(1, n - 1)]
+    aim = np.arctan2(*(target - p[0])[::-1]) + draw(st.floats(-0.1, 0.1))
     velocity, w[0] = sn.strike(draw(st.floats(0.05, 7)), aim, draw(part) * 0.35, draw(part) * 0.35)
     v[0] = velocity[:2]
     if n > 2 and draw(st.booleans()):
@@ -301,9 +291,8 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
         here = in_play(end, t)
         now = now[here]
         if len(now) > 1:
-            assert (
-                np.hypot(*(now[:, None] - now[None]).transpose(2, 0, 1)) + np.eye(len(now))
-            ).min() > D - 1e-9
+            apart = np.hypot(*(now[:, None] - now[None]).transpose(2, 0, 1)) + np.eye(len(now))
+            assert apart.min() > D - 1e-9
         if table:
             beside = np.abs(np.abs(now[:, 1]) - 0.9) < 0.7  # of a long cushion, clear of the pockets
             assert (np.abs(now[beside, 0]) <= 0.889 - R + 1e-9).all()
@@ -366,9 +355,8 @@ def test_on_unbounded_cloth_no_place_or_direction_is_special(shot, by, shift):
     flat = lambda a: turned(np.column_stack([a, np.zeros(len(a))]), by)[:, :2]  # noqa: E731
     two = sn.simulate(flat(p) + shift, flat(v), turned(w, by), None, fidelity="reference")
     kinds = [(e["kind"], e["i"], e["j"]) for e in one.events[contacts]]
-    assert kinds == [
-        (e["kind"], e["i"], e["j"]) for e in two.events[two.events["kind"] == EventKind.BALL_BALL]
-    ]
+    met = two.events[two.events["kind"] == EventKind.BALL_BALL]
+    assert kinds == [(e["kind"], e["i"], e["j"]) for e in met]
     assert np.abs(two.positions - flat(one.positions) - shift).max() < 1e-5
 
 
@@ -426,6 +414,5 @@ def test_cushion_impacts_that_once_did_not_end(numbers):
 @pytest.mark.parametrize("depth", [0.9, 1.1, 1.49, 1.51])
 def test_touching_balls_that_creep_together_meet_however_deep(depth):
     """Pressed between 1 and 1.5 skins deep they once never met, and went on into each other."""
-    assert (
-        from_python(detection.distance_crossing)(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3
-    )
+    crossing = from_python(detection.distance_crossing)
+    assert crossing(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3

@@ -37,9 +37,8 @@ def integrated(v, nap, times):
         return np.hypot(z[2], z[3]) - end
 
     slow.terminal = True
-    out = solve_ivp(
-        rate, (0, 1e4), (0, 0, *v), "DOP853", events=slow, dense_output=True, rtol=1e-12, atol=1e-14
-    )
+    exact = {"dense_output": True, "rtol": 1e-12, "atol": 1e-14}
+    out = solve_ivp(rate, (0, 1e4), (0, 0, *v), "DOP853", events=slow, **exact)
     within = np.minimum(times, out.t[-1])
     return out.sol(within).T, out.t[-1], out.y[:2, -1], end / (DECEL - abs(nap))
 
@@ -83,19 +82,15 @@ def test_along_the_nap_is_one_piece_in_closed_form():
     for nap in (0.001, -0.001, 0.02):  # straight across it a ball drifts by v^2 nap / (4 (decel^2 - nap^2))
         shot = rolled((0.5, 0.0), nap)
         assert shot.positions[0, 1] == pytest.approx(0.25 * nap / (4 * (DECEL**2 - nap**2)), rel=1e-12)
-        slid = [
-            sn.simulate([(0, 0)], [(2.0, 0)], np.zeros((1, 3)), None, {"nap": n}).at(0.1) for n in (0.0, nap)
-        ]
+        shots = (sn.simulate([(0, 0)], [(2.0, 0)], np.zeros((1, 3)), None, {"nap": n}) for n in (0.0, nap))
+        slid = [shot.at(0.1) for shot in shots]
         assert np.array_equal(slid[0][0], slid[1][0])  # while it slides it does not feel it
 
 
 def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
     for v, _ in rolls(10, 3, 0.1):
-        plain, named, tiny = (
-            rolled(v, 0.0),
-            sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None),
-            rolled(v, 1e-15),
-        )
+        plain, named = rolled(v, 0.0), sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None)
+        tiny = rolled(v, 1e-15)
         assert np.array_equal(plain.segments, named.segments)
         slowing = -DECEL * v / np.sqrt(v[0] * v[0] + v[1] * v[1])
         # to the bit
@@ -126,9 +121,8 @@ def test_a_solved_aim_allows_for_nap_and_drag(field):
 
     def missed_by(solved_for):
         law = CueLaw(solved_for.pack(), physics.end_mass_ratio, code, steps, 0.5, np.empty(0))
-        aim = aim_for(
-            balls, np.ones(2, bool), 1, tuple(pocket), tuple(ghost), (1.2, 0.0, 0.0, 0.0), law, work
-        )
+        places = balls, np.ones(2, bool), 1, tuple(pocket), tuple(ghost)
+        aim = aim_for(*places, (1.2, 0.0, 0.0, 0.0), law, work)
         v, w = sn.strike(1.2, aim, physics=physics)
         shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)
         return np.hypot(*(shot.at(np.linspace(0, shot.duration, 40_000))[0][:, 1] - pocket).T).min()

@@ -12,10 +12,8 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.physics.impact import contact
 from snooker_env.physics.table import MOUTH
 
-POOL_POCKETS = {
-    "corner": Pocket.corner(mouth=0.12, shelf=0.02, fall_radius=0.065, cut=140, jaw_radius=0.004),
-    "ball_radius": 0.025,
-}
+CORNER = Pocket.corner(mouth=0.12, shelf=0.02, fall_radius=0.065, cut=140, jaw_radius=0.004)
+POOL_POCKETS = {"corner": CORNER, "ball_radius": 0.025}
 TABLES = {name: Table.preset(name) for name in ("match", "tight", "uk8", "pool9", "carom")} | {
     "square, 4 pockets": Table.rectangular(1.5, 1.5, pockets=4, **POOL_POCKETS),
     "wider than long": Table.rectangular(
@@ -73,9 +71,8 @@ def random_shots(table, n_shots, n_balls, seed, top=6.0):
                     break
     velocities, spins = np.zeros((n_shots, n_balls, 2)), np.zeros((n_shots, n_balls, 3))
     for k in range(n_shots):
-        v, spins[k, 0] = sn.strike(
-            rng.uniform(0.3, top), rng.uniform(-4, 4), *rng.uniform(-0.35, 0.35, 2), physics=physics
-        )
+        stroke = rng.uniform(0.3, top), rng.uniform(-4, 4), *rng.uniform(-0.35, 0.35, 2)
+        v, spins[k, 0] = sn.strike(*stroke, physics=physics)
         velocities[k, 0] = v[:2]
         if k % 3 == 0:
             velocities[k, 1] = rng.normal(0, 0.5, 2)
@@ -86,9 +83,8 @@ def random_shots(table, n_shots, n_balls, seed, top=6.0):
 def test_no_shot_leaves_the_table_gains_energy_or_ends_where_no_ball_may_lie(name):
     table = TABLES[name]
     p, v, w, physics = random_shots(table, 60, 5, seed=1)
-    found = invariants.play(
-        (p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard")
-    )
+    shots = p, v, w, np.ones(p.shape[:2], bool)
+    found = invariants.play(shots, physics, table, contact.parse_fidelity("standard"))
     assert (found.status == 0).all() and (found.worst <= allowed("standard")).all()
     end = sn.simulate_batch(p, v, w, table, physics)
     again = sn.simulate_batch(end.positions, 0 * v, 0 * w, table, physics, on_table=end.on_table)
@@ -107,18 +103,16 @@ def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
     start = rng.uniform(-0.6, 0.6, (b, 2)) * (table.bounds[:, 1] - physics.R)
     to = table.falls[k, :2] - start + rng.normal(0, 0.03, (b, 2))
     far = np.hypot(*to.T)
-    speed = np.sqrt(
-        2 * physics.mu_r * physics.g * np.maximum(far - table.falls[k, 2] + rng.uniform(-0.05, 0.01, b), 0.01)
-    )
+    run = np.maximum(far - table.falls[k, 2] + rng.uniform(-0.05, 0.01, b), 0.01)
+    speed = np.sqrt(2 * physics.mu_r * physics.g * run)
     v = speed[:, None] * to / far[:, None]
     w = np.stack([-v[:, 1], v[:, 0], 0 * v[:, 0]], axis=1) / physics.R
     end = sn.simulate_batch(start[:, None], v[:, None], w[:, None], table, physics)
     lying = end.on_table[:, 0]
     assert lying.sum() > 0.2 * b
     table.check(end.positions[lying], physics.R)
-    depth = np.maximum(
-        table.bounds[:, 0] - end.positions[lying], end.positions[lying] - table.bounds[:, 1]
-    ).max(axis=(1, 2))
+    places, (low, high) = end.positions[lying], table.bounds.T
+    depth = np.maximum(low - places, places - high).max(axis=(1, 2))
     assert depth.max() > -physics.R  # some lie in a mouth
     if name == "rounded, with facings":  # deeper than on any snooker table
         assert depth.max() > 2 * MOUTH
@@ -128,11 +122,8 @@ def test_snooker_is_played_on_a_rectangular_table_of_its_size():
     """With the match table's pockets it is the match table, made for its ball or for any; without pockets
     nothing is potted."""
     ends = []
-    for table in (
-        "match",
-        Table.rectangular(3.569, 1.778),
-        Table.rectangular(3.569, 1.778, ball_radius=0.02625),
-    ):
+    own = (Table.rectangular(3.569, 1.778, ball_radius=radius) for radius in (None, 0.02625))
+    for table in ("match", *own):
         env = SnookerVectorEnv(32, table=table, layout="random:10")
         env.reset(seed=3)
         ends.append(env.step(np.random.default_rng(0).uniform(-1, 1, (32, 4)).astype(np.float32))[:2])

@@ -89,9 +89,8 @@ def test_a_ball_in_the_way_is_met_when_the_path_comes_there():
         other = (way + 2 * R * np.cos(side), 2 * R * np.sin(side))
         if np.hypot(*other) < 2.1 * R:
             continue
-        shot = sn.simulate(
-            [(0, 0), other], [(speed, 0), (0, 0)], [(0, speed / R, 0), (0, 0, 0)], None, {"roll_drag": 0.015}
-        )
+        balls = [(0, 0), other], [(speed, 0), (0, 0)], [(0, speed / R, 0), (0, 0, 0)]
+        shot = sn.simulate(*balls, None, {"roll_drag": 0.015})
         hit = shot.events["time"][shot.events["kind"] == EventKind.BALL_BALL][0]
         then = np.interp(way, x, v)
         assert -1e-7 < hit - np.interp(way, x, t) < 1.05 * LAG / then

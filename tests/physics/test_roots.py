@@ -9,10 +9,8 @@ from snooker_env.physics import detection, roots
 from tests.kernels import from_python
 
 distance_crossing = from_python(detection.distance_crossing)
-quadratic_crossing, quartic_crossing = (
-    from_python(roots.quadratic_crossing),
-    from_python(roots.quartic_crossing),
-)
+quadratic_crossing = from_python(roots.quadratic_crossing)
+quartic_crossing = from_python(roots.quartic_crossing)
 
 
 def numbers(low, high):
@@ -36,9 +34,8 @@ def test_quartic_with_known_real_roots(roots, T, sign, scale):
         return  # (nearly) double roots and roots at the ends: rounding of the coefficients decides
     falls = [x for x in roots if 0 <= x <= T and np.polyval(np.polyder(q), x) < 0]
     stretched = (a / scale**k for a, k in zip(q, range(4, -1, -1), strict=True))
-    assert quartic_crossing(*stretched, T * scale) / scale == pytest.approx(
-        min(falls, default=np.inf), abs=1e-8
-    )
+    first = min(falls, default=np.inf)
+    assert quartic_crossing(*stretched, T * scale) / scale == pytest.approx(first, abs=1e-8)
 
 
 @settings(max_examples=300, deadline=None)
@@ -87,6 +84,5 @@ def test_rejection_loses_nothing(c, T):
     if len(inside):
         assert got <= t[inside[0]]
     if np.isfinite(got):
-        assert np.hypot(x0 + x1 * got + x2 * got**2, y0 + y1 * got + y2 * got**2) == pytest.approx(
-            d, abs=1e-9
-        )
+        x, y = x0 + x1 * got + x2 * got**2, y0 + y1 * got + y2 * got**2
+        assert np.hypot(x, y) == pytest.approx(d, abs=1e-9)

@@ -60,9 +60,8 @@ def random_table(rng, n):
     """n balls on the table, clear of each other and of cushions."""
     while True:
         p = rng.uniform([-0.85, -1.74], [0.85, 1.74], (n, 2))
-        if (np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + 9 * np.eye(n)).min() > D + 1e-3 and (
-            np.abs(p[:, 1]) > 0.1
-        ).all():
+        apart = np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + 9 * np.eye(n)
+        if apart.min() > D + 1e-3 and (np.abs(p[:, 1]) > 0.1).all():
             return p
 
 
@@ -106,10 +105,8 @@ def test_same_input_same_bits_single_batch_and_threads():
         v[k], w[k] = struck(22, rng.uniform(1, 6), rng.uniform(-3, 3), side=0.2, top=-0.2)
     one = sn.simulate_batch(p, v, w, threads=1, events=True)
     two = sn.simulate_batch(p, v, w, threads=2, events=True)
-    digest = [
-        hashlib.sha256(b.positions.tobytes() + b.potted.tobytes() + b.duration.tobytes()).hexdigest()
-        for b in (one, two)
-    ]
+    ends = (b.positions.tobytes() + b.potted.tobytes() + b.duration.tobytes() for b in (one, two))
+    digest = [hashlib.sha256(end).hexdigest() for end in ends]
     assert digest[0] == digest[1]
     for k in range(24):
         shot = sn.simulate(p[k], v[k], w[k])
@@ -141,9 +138,8 @@ def test_a_touching_ball_played_away_from_stays(gap, away):
     p = np.array([(0.0, 0.0), (EXACT + gap, 0.0)])
     for tip in ({}, {"side": 0.3}, {"top": 0.4}, {"top": -0.4}):
         for turn in (1, -1):
-            shot = sn.simulate(
-                p, *struck(2, 2.0, turn * away, **tip), table=None, physics={"end_mass_ratio": 1e9}
-            )
+            balls = p, *struck(2, 2.0, turn * away, **tip)
+            shot = sn.simulate(*balls, table=None, physics={"end_mass_ratio": 1e9})
             if tip.get("top") == -0.4 or (tip.get("side") and away < 2.0):
                 check_shot(shot)  # it may come back to the ball; it only must not be dragged along at once
                 continue
@@ -236,7 +232,6 @@ def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
     shot = sn.simulate([place, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
     assert shot.on_table.all() and tuple(shot.positions[0]) == place
     for wrong in [(0.9145, 0.03449), (0.899444997865469, 0.033), (0.899444997865469, 0.036), (0.91, 0.5)]:
-        with pytest.raises(
-            ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"
-        ):
+        says = r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"
+        with pytest.raises(ValueError, match=says):
             sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))

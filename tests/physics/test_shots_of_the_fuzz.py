@@ -17,7 +17,6 @@ from benchmarks import fuzz
 def test_it_comes_to_rest(number, index, why):
     drawn = fuzz.batch(6, number)
     places, velocities = (part[index] for part in drawn.states())
-    shot = sn.simulate(
-        places, velocities, drawn.spins[index], drawn.table, drawn.physics, "standard", max_events=40_000
-    )
+    world = drawn.spins[index], drawn.table, drawn.physics, "standard"
+    shot = sn.simulate(places, velocities, *world, max_events=40_000)
     assert shot.duration > 0.0, why

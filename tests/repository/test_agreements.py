@@ -21,9 +21,8 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
     places = np.column_stack([x.ravel(), y.ravel()])
     room = np.array([geometry.HALF_WIDTH, geometry.HALF_LENGTH]) - geometry.BALL_RADIUS - layouts.CUSHION_GAP
     clear = np.all(np.abs(places) <= room, axis=1)
-    clear &= np.all(
-        np.hypot(*(places[:, None] - geometry.POCKET_PLACES).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1
-    )
+    far = np.hypot(*(places[:, None] - geometry.POCKET_PLACES).transpose(2, 0, 1))
+    clear &= np.all(far >= layouts.POCKET_GAP, axis=1)
     assert clear.sum() > 5000
     Table.preset(name).check(places[clear][:, None], geometry.BALL_RADIUS)  # each by itself
 
@@ -39,9 +38,8 @@ def test_constants_that_rooms_share_agree():
     assert side == Physics().max_offset == 0.5
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
-    assert observations.space("flat").shape == (
-        balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES),
-    )
+    numbers = balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES)
+    assert observations.space("flat").shape == (numbers,)
     assert balls.NAMES[16:] == balls.COLOUR_NAMES
     assert len(balls.NAMES) == balls.N_BALLS == len(balls.VALUES) == len(balls.SPOTS)
 

@@ -122,9 +122,8 @@ def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     monkeypatch.chdir(tmp_path)
-    with pytest.warns(
-        RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
-    ):
+    says = "no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
+    with pytest.warns(RuntimeWarning, match=says):
         assert cache.cache_folder() is None
     assert not list(tmp_path.iterdir())
 
@@ -226,7 +225,5 @@ def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path):
     for factor in ("2.0", "3.0"):
         code = TOY.replace("2.0", factor) + "print(double(1.0))"
         out, err = python(code, NUMBA_CACHE_DIR=str(tmp_path / "cache"), SNOOKER_ENV_QUIET="0")
-        assert (
-            out.strip() == factor
-            and "compiling a toy to machine code, about 3 s (for this process only;" in err
-        )
+        assert out.strip() == factor
+        assert "compiling a toy to machine code, about 3 s (for this process only;" in err

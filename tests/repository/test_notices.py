@@ -48,9 +48,8 @@ def toys(tmp_path):
 
     def run(code, **variables):
         variables = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "SNOOKER_ENV_QUIET": None} | variables
-        out, err = python(
-            "from toys import *\n" + code, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]), **variables
-        )
+        paths = os.pathsep.join([str(tmp_path), str(ROOT)])
+        out, err = python("from toys import *\n" + code, PYTHONPATH=paths, **variables)
         assert out == ""
         return err
 
@@ -130,11 +129,8 @@ def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(c
             kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)
             event.start_event("numba:compile", data={"dispatcher": kernel})
             err = capsys.readouterr().err
-            assert (
-                err.count("\n") == 1
-                and f"compiling {kernel.cost.what} to machine code, " in err
-                and kernel in jit.ENTRIES
-            )
+            assert err.count("\n") == 1 and f"compiling {kernel.cost.what} to machine code, " in err
+            assert kernel in jit.ENTRIES
     event.start_event("numba:compile", data={"dispatcher": sorted})
     event.start_event("numba:compile")
     assert capsys.readouterr().err == ""

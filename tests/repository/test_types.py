@@ -75,9 +75,8 @@ def test_the_checker_takes_right_calls_and_sees_wrong_ones(tmp_path):
     (tmp_path / "calls.py").write_text(CALLS)
     settings = {"typeCheckingMode": "basic", "pythonVersion": "3.10", "reportUnusedExpression": "none"}
     (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings | {"extraPaths": [str(ROOT)]}))
-    errors = {
-        one["range"]["start"]["line"] for one in pyright("calls.py", cwd=tmp_path)["generalDiagnostics"]
-    }
+    found = pyright("calls.py", cwd=tmp_path)["generalDiagnostics"]
+    errors = {one["range"]["start"]["line"] for one in found}
     first = CALLS[: CALLS.index("# Each")].count("\n") + 1
     assert errors == set(range(first, CALLS.count("\n")))
 

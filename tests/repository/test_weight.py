@@ -27,10 +27,8 @@ def test_figures():
     assert (package["lines"], package["files"], package["`: Any`"], rest["`noqa: E731`"]) == (88, 3, 1, 1)
     assert package["functions over 80 lines"] == ["snooker_env/a/words.py:run 81"]
     assert package["functions over 8 arguments"] == ["snooker_env/a/words.py:run 9"]
-    assert [name.partition(":")[2] for name in package["functions named by a participle"]] == [
-        "is_made",
-        "tried",
-    ]
+    participles = [name.partition(":")[2] for name in package["functions named by a participle"]]
+    assert participles == ["is_made", "tried"]
     assert package["file names twice"] == ["words.py 2"]
     assert weight["all but tests"]["file names twice"] == ["words.py 3"]
     assert weight["agents + train.py"]["commands"] == ["train.py"]

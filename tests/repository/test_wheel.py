@@ -23,12 +23,8 @@ def test_the_wheel_alone_plays_simulates_advises_serves_and_judges(tmp_path, mon
     venv.create(tmp_path / "venv", with_pip=True)
     env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     (tmp_path / "empty").mkdir()
-    for command in (
-        [python, "-m", "pip", "install", "--quiet", wheel],
-        [python, Path(__file__).with_name("wheel_alone.py")],
-    ):
-        done = subprocess.run(
-            command, cwd=tmp_path / "empty", env=env, capture_output=True, text=True, timeout=1200
-        )
+    where = {"cwd": tmp_path / "empty", "env": env}
+    for words in (["-m", "pip", "install", "--quiet", wheel], [Path(__file__).with_name("wheel_alone.py")]):
+        done = subprocess.run([python, *words], **where, capture_output=True, text=True, timeout=1200)
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
     assert "missing extras" in done.stdout

@@ -50,9 +50,8 @@ def positions_of_frames(n, seed):
     while len(found) < n:
         tables, which = deal(20, seed, **given), np.arange(20)
         while len(which):
-            found += states(
-                tables, [k for k in which if not tables.game[k, IN_HAND] and not has_pot(tables, k)]
-            )
+            lying = [k for k in which if not tables.game[k, IN_HAND]]
+            found += states(tables, [k for k in lying if not has_pot(tables, k)])
             buffers, out = ShotBuffers(len(which)), tables.output()
             crew = Crew(buffers)
             asked = player.strokes(tables, which, crew)

@@ -32,10 +32,8 @@ def kept(**options):
 def action(speed, aim, elevation, side=0.0, top=0.0):
     """A stroke; aim [rad], elevation [deg]."""
     turn = math.remainder(aim / math.pi, 2.0)
-    return np.array(
-        [2 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1, 2 * side, 2 * top, turn, elevation / 35 - 1],
-        np.float32,
-    )
+    share = 2 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1
+    return np.array([share, 2 * side, 2 * top, turn, elevation / 35 - 1], np.float32)
 
 
 def played(env, position, stroke):
@@ -93,9 +91,8 @@ def test_the_cue_ball_forced_off_the_table_is_a_foul_and_in_hand():
     one = env.history[0]
     assert one.shot.potted[0] == -2 and Foul(one.fouls) & Foul.CUE_OFF and one.penalty == 4
     assert EventKind.OFF in one.shot.events["kind"]
-    assert (
-        not one.on_table[0] or np.hypot(*(one.positions[0] - SPOTS[0])) < 0.3
-    )  # it stands in the D for the other
+    # it stands in the D for the other
+    assert not one.on_table[0] or np.hypot(*(one.positions[0] - SPOTS[0])) < 0.3
 
 
 @pytest.mark.parametrize(("ball", "returns"), [("red", False), ("black", True)])

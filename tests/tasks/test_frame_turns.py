@@ -1,4 +1,4 @@
-"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth?"""
+"""Whose stroke is it in ``task="frame"``, what may they decide, and what is it worth?"""
 
 import gymnasium
 import numpy as np
@@ -60,7 +60,7 @@ def test_a_free_ball_is_seen_and_scores():
     ("opponent", "layout"), [("none", "colours"), ("random", "random:2"), ("ghost_ball", "pots:easy")]
 )
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
-    """From the first stroke, which may be the opponent's, to the last, which may be in his first visit."""
+    """From the first stroke, which may be the opponent's, to the last, which may be in the same player's first visit."""
     broke, before = 0, 0
     for seed in range(8):
         totals = {}

@@ -13,9 +13,7 @@ from tests.tables import begun
 _kick_of = from_python(kick_of)
 
 CUT = {"position": sn.Position(cue=(0.0, 0.0), black=(0.03, 0.6))}
-ACTION = np.array(
-    [-0.4, 0.0, -0.4, 0.5]
-)  # a stun shot straight up the table: the black at a cut of 35 degrees
+ACTION = np.array([-0.4, 0.0, -0.4, 0.5])  # a stun shot up the table: the black at a cut of 35 degrees
 ROLLING = ACTION * [1, 1, -2, 1]  # at 0.4 R above the middle the ball rolls from the start
 FRICTION = 0.2  # docs/physics/limits.md
 
@@ -56,9 +54,8 @@ def test_kicks_are_as_frequent_as_asked(share, n):
     frictions = np.array([_kick_of(noise, stream) for _ in range(n)])
     assert set(frictions) == {0.0, FRICTION} and stream.tolist() == [3, n]  # one block each
     assert (frictions > 0).mean() == pytest.approx(share, abs=4 * np.sqrt(share * (1 - share) / n))
-    (always,), (never,) = (
-        {_kick_of(Noise(kick=p).pack(1.0), stream) for _ in range(100)} for p in (1.0, 0.0)
-    )
+    packed = (Noise(kick=p).pack(1.0) for p in (1.0, 0.0))
+    (always,), (never,) = ({_kick_of(noise, stream) for _ in range(100)} for noise in packed)
     assert (always, never) == (FRICTION, 0.0)
 
 
@@ -80,9 +77,8 @@ def test_kicks_are_independent_of_the_errors_and_of_each_other():
     n, share = 3000, 0.3
     errors = {"aim_deg": 0.05, "speed_rel": 0.02, "offset_mm": 0.1, "elevation_deg": 0.1}
     drawn, kicked = [], []
-    envs = [
-        sn.SnookerVectorEnv(n, aim="absolute", noise=errors | {"kick": p}, threads=1) for p in (0.0, share)
-    ]
+    noises = (errors | {"kick": p} for p in (0.0, share))
+    envs = [sn.SnookerVectorEnv(n, aim="absolute", noise=noise, threads=1) for noise in noises]
     for seed in (1, 10_001):  # the second time in the same work space
         ends = []
         for env in envs:

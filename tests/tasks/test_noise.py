@@ -62,9 +62,8 @@ def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
     """Aim and squirt together, as the balls leave; 4000 of them give a standard deviation to 1.1 %."""
     constants = Physics.of(physics)
     ways = []
-    for speed, side, top, aim, elevation in drawn(
-        replace(LEVELS[name], lapse=0.0), 4000, 2.0, 0.0, 0.0, 0.0, 0.0
-    ).tolist():
+    strokes = drawn(replace(LEVELS[name], lapse=0.0), 4000, 2.0, 0.0, 0.0, 0.0, 0.0)
+    for speed, side, top, aim, elevation in strokes.tolist():
         v, _ = strike(speed, aim, side, top, elevation, constants)
         ways.append(math.degrees(math.atan2(v[1], v[0])))
     wanted = LEVELS[name].direction_deg(physics, speed=2.0)
@@ -86,16 +85,14 @@ def test_a_lapse_makes_all_five_errors_larger_and_no_other_stroke_changes():
     """A share p of the strokes has K times the errors that it would have; from keys as from Sobol or NumPy's numbers."""
     wide, n = Noise(aim_deg=0.1, offset_mm=0.3, elevation_deg=0.2, speed_rel=0.02), 20_000
     lapsing = replace(wide, lapse=0.1, lapse_factor=4.0)
-    plain, some = (
-        drawn(noise, n, 2.0, 0.1, 0.2, 0.3, 0.5) - (2.0, 0.1, 0.2, 0.3, 0.5) for noise in (wide, lapsing)
-    )
+    meant = 2.0, 0.1, 0.2, 0.3, 0.5
+    plain, some = (drawn(noise, n, *meant) - meant for noise in (wide, lapsing))
     times = some / plain
     lapse = times[:, 3] > 2.0
     assert times == pytest.approx(np.where(lapse, 4.0, 1.0)[:, None] * np.ones(5), rel=1e-6)
     assert lapse.mean() == pytest.approx(0.1, abs=4 * math.sqrt(0.09 / n))
-    assert abs(np.corrcoef(lapse, np.abs(plain[:, 3]))[0, 1]) < 4 / math.sqrt(
-        n
-    )  # the sixth number alone decides
+    # the sixth number alone decides
+    assert abs(np.corrcoef(lapse, np.abs(plain[:, 3]))[0, 1]) < 4 / math.sqrt(n)
     streams = np.array([[k, 0] for k in range(n)], np.uint64)
     numbers = lapsing.errors_of(streams)
     assert (numbers == wide.errors_of(streams)).all(axis=1).mean() == pytest.approx(0.9, abs=0.01)
@@ -105,17 +102,14 @@ def test_a_lapse_makes_all_five_errors_larger_and_no_other_stroke_changes():
         assert (np.abs(errors) > 4.0).mean(axis=0) == pytest.approx([0.1 * 0.3173] * 5, abs=0.006)
     for p, share in ((0.0, 0.0), (1.0, 1.0)):
         always = Noise(aim_deg=0.1, lapse=p, lapse_factor=3.0).draw_errors(np.random.default_rng(3), 500)
-        assert (np.abs(always) > 4.5).any() == (share == 1.0) and always.std() == pytest.approx(
-            1.0 + 2.0 * share, rel=0.05
-        )
+        assert (np.abs(always) > 4.5).any() == (share == 1.0)
+        assert always.std() == pytest.approx(1.0 + 2.0 * share, rel=0.05)
 
 
 def test_the_chance_to_stay_within_is_that_of_the_errors_drawn():
     noise = Noise(aim_deg=0.1, lapse=0.07, lapse_factor=5.0)
-    errors, spread = (
-        np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3],
-        noise.spread(),
-    )
+    errors = np.radians(0.1) * noise.draw_errors(np.random.default_rng(4), 200_000)[:, 3]
+    spread = noise.spread()
     for within in (0.3, 1.0, 2.0, 6.0):
         chance = from_python(chance_within)(within * spread.core, spread)
         assert chance == pytest.approx((np.abs(errors) < within * spread.core).mean(), abs=0.004)
@@ -134,11 +128,8 @@ def test_no_noise_draws_nothing():
     noisy = begun(SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9}))
     noisy.step(np.zeros(4))
     assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
-    assert Noise().silent and not any(
-        Noise(**{f: 1e-9}).silent
-        for f in Noise.__dataclass_fields__
-        if f not in ("growth", "lapse", "lapse_factor")
-    )
+    errors = set(Noise.__dataclass_fields__) - {"growth", "lapse", "lapse_factor"}
+    assert Noise().silent and not any(Noise(**{f: 1e-9}).silent for f in errors)
 
 
 def test_a_noisy_tip_is_drawn_back_too():

@@ -125,9 +125,8 @@ GIVES_UP = [0.0] * 7 + [-1.0]
 
 
 def test_to_concede_costs_what_is_left_on_the_table():
-    env = frame_state(
-        frame_env(says=["decision", "concede"], opponent="ghost_ball"), STANDING, {"scores": (10, 30)}
-    )
+    env = frame_env(says=["decision", "concede"], opponent="ghost_ball")
+    env = frame_state(env, STANDING, {"scores": (10, 30)})
     _, reward, terminated, _, info = env.step(GIVES_UP)
     assert (reward, terminated, info["winner"]) == (-LEFT, True, 1)
     assert (info["score"], info["opponent_score"]) == (10.0, 30.0)  # the score stands
@@ -161,7 +160,7 @@ def table(places, cue=None):
 
 
 def asks_again(observation, rng):
-    """An opponent who has the balls replaced whenever he may."""
+    """An opponent who has the balls replaced whenever they may."""
     return [-0.9, 0.0, 0.0, 0.9, 0.0, 0.0, 1.0]
 
 

@@ -1,4 +1,4 @@
-"""Who may play against the agent, and how well does he? Players by name, saved models."""
+"""Who may play against the agent, and how well? Players by name, saved models."""
 
 import copy
 import pickle
@@ -18,8 +18,8 @@ from tests.torch_threads import deciding_on_one_thread
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
-def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
-    """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
+def test_after_an_error_of_the_opponent_nobody_plays_for_them(error):
+    """The opponent's turn was cut short: the agent's next action is its own, and the next episode begins as ever."""
 
     def opponent(observation, rng):
         if failing:
@@ -34,7 +34,7 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(miss)
     with pytest.raises(error, match="no turn"):
-        [env.reset(seed=seed) for seed in range(10)]  # he breaks off
+        [env.reset(seed=seed) for seed in range(10)]  # the opponent breaks off
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(miss)
     failing = False

@@ -157,9 +157,8 @@ def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere
 def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     """Snookered by a foul on the only red: a player blind to the free ball strikes at the hidden red."""
     one = Sees(action="discrete", observation="flat")
-    env = frame_state(
-        frame_env(opponent=SeenPlayer(one)), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True}
-    )
+    choice = {"striker": 0, "phase": "choice", "free_ball": True}
+    env = frame_state(frame_env(opponent=SeenPlayer(one)), HIDDEN, choice)
     env.tables.game[0, STRIKER] = 1  # the opponent has the free ball
     buffers, _ = asked(env)
     assert one.seen[-1][0, 110 + 1] == 1.0 and env.frame.free_ball and env.ball_on == BallOn.RED
@@ -219,6 +218,7 @@ class SeesNothing(Sees):
 
 
 OPTIONS_OF = "key of the options of player "
+ACTS = (Sees(), lambda observation, rng: MISS)
 
 
 @pytest.mark.parametrize(
@@ -230,10 +230,9 @@ OPTIONS_OF = "key of the options of player "
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
         (OpponentPool, "opponent = <class '.*OpponentPool'>: must be an instance"),
         (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
-        (Sees(), "opponent = .*: must be one of .*; players.SeenPlayer makes a player of what acts"),
-        (
-            lambda observation, rng: MISS,
-            "opponent = .*: must be one of .*; players.SeenPlayer makes a player",
+        *(
+            (one, "opponent = .*: must be one of .*; players.SeenPlayer wraps an object that acts")
+            for one in ACTS
         ),
         (f"{__name__}:SeesNothing", f"opponent = '.*SeesNothing': {OPTIONS_OF}SeesNothing"),
     ],
@@ -295,7 +294,7 @@ def test_one_is_drawn_for_each_frame_in_proportion_to_the_weights():
     assert drawn[3] == 0 and 70 < drawn[1] < 130 and drawn[2] > 150
 
 
-def test_he_plays_the_whole_frame():
+def test_the_one_drawn_plays_the_whole_frame():
     seen = []
     tables = frames(OpponentPool([Noted("a", seen), Noted("b", seen)]), max_strokes=30)
     by_frame = set()

@@ -83,10 +83,8 @@ def test_without_a_pot_an_action_picks_a_line_of_the_choices(options):
         actions = np.tile([a0, 0.0, TOPS[top] / 0.4, 0.0], (40, 1))
         actions[:, 3] = (line + 0.5) / lines
         picks = np.full(len(own), choice_of(line, speed, SIDES.index(0.0), top))
-        meant, wanted = (
-            Planner(box).strokes_of(at, own, actions[own])[0],
-            chosen.strokes_of(at, own, picks)[0],
-        )
+        meant = Planner(box).strokes_of(at, own, actions[own])[0]
+        wanted = chosen.strokes_of(at, own, picks)[0]
         assert np.allclose(meant, wanted, rtol=0, atol=1e-9)
         seen |= {line} if len(own) else set()
     assert seen >= {0, 1}
@@ -139,11 +137,8 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
             wanted[:, 1] = -1.0
             for j in range((direct.ball[k] >= 0).sum() * at.on_table[k, CUE]):
                 ball, pocket, t = direct.ball[k, j], direct.pocket[k, j], direct.tolerance[k, j]
-                (x, y), (gx, gy), (px, py) = (
-                    at.positions[k, ball],
-                    direct.ghost[k, j],
-                    POCKET_AIMS[pocket, :2],
-                )
+                (x, y), (gx, gy) = at.positions[k, ball], direct.ghost[k, j]
+                (px, py) = POCKET_AIMS[pocket, :2]
                 to, on = np.array([gx - cx, gy - cy]), np.array([px - x, py - y])
                 turn = atan2(to[0] * on[1] - to[1] * on[0], to @ on)  # to the left
                 chance, far = chances[k, j], hypot(*to)
@@ -157,11 +152,9 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
             none += not wanted[0, 0]
             cue = cx / 0.889, cy / 1.7845
             assert observed[k, :61] == pytest.approx([*wanted.ravel(), *cue, *flat[k, 110:]], abs=2e-6)
-        observed = env.step(
-            env.action_masks().argmax(axis=1)
-            if env.options.action == "discrete"
-            else rng.uniform(-0.2, 0.2, (40, 4))
-        )[0]
+        chooses = env.options.action == "discrete"
+        a = env.action_masks().argmax(axis=1) if chooses else rng.uniform(-0.2, 0.2, (40, 4))
+        observed = env.step(a)[0]
     assert len(POT_ENTRIES) == 12
     assert none > 0 and len(pockets) >= (4 if options.get("layout") != "break_off" else 0)
 
@@ -169,9 +162,8 @@ def test_the_four_widest_pots_the_cue_ball_and_the_state_are_seen(options):
 def test_of_equal_pots_the_lower_ball_comes_first_then_the_lower_pocket():
     env = sn.SnookerEnv(noise="club")
     for reds in (((-0.3, 0.5), (0.3, 0.5)), ((0.3, 0.5), (-0.3, 0.5))):
-        observed, _ = env.reset(
-            options={"position": Position(cue=(0.0, 0.0), reds=reds, black=(0.0, 1.4605))}
-        )
+        position = Position(cue=(0.0, 0.0), reds=reds, black=(0.0, 1.4605))
+        observed, _ = env.reset(options={"position": position})
         rows = observed[:48].reshape(4, 12)
         assert rows[0, 3] == rows[1, 3] > 0.0
         assert rows[:2, 5] == pytest.approx([x / 0.889 for x, _ in reds], abs=1e-6)

@@ -87,11 +87,7 @@ def at_the_cushion(n, away, seed):
         positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
         positions[0], positions[1], on_table[:2] = cue, red, True
         found = pots.pots(positions, on_table, mask_of([1]), most=1)
-        if (
-            len(found)
-            and np.degrees(np.arccos(min(1.0, found[0, 4]))) < 40.0
-            and np.hypot(*(red - cue)) > 0.5
-        ):
+        if len(found) and found[0, 4] > np.cos(np.radians(40.0)) and np.hypot(*(red - cue)) > 0.5:
             out.append((cue, tuple(red)))
     return out
 
@@ -177,9 +173,8 @@ def test_masks_of_crowded_tables_are_those_of_every_stroke_asked_for_its_room():
 def test_planning_and_players_of_choices_have_the_masks_of_the_task():
     states = [posed({0: (FROZEN, 0.9), 1: (0.0, 1.2)}), posed({0: (0.3, 0.0), 1: (0.0, 1.2)})]
     at = Positions.of([env.get_state() for env in states])
-    wanted = np.stack(
-        [posed({0: lie, 1: (0.0, 1.2)}, action="discrete").action_masks() for lie in at.positions[:, 0]]
-    )
+    lies = ({0: lie, 1: (0.0, 1.2)} for lie in at.positions[:, 0])
+    wanted = np.stack([posed(lie, action="discrete").action_masks() for lie in lies])
     free, real = action_masks(at), action_masks(at, cue="real")
     assert np.array_equal(real, wanted) and (free[0] != real[0]).any() and np.array_equal(free[1], real[1])
     wrong: Any = "Real"
@@ -196,18 +191,13 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
 
 def test_chances_of_pots_fall_where_the_cue_must_be_raised():
     cushion, spread = at_the_cushion(1, 0.0, 7)[0], Spread(1e-3)
-    at, rails = (
-        Positions.of(posed({0: cushion[0], 1: cushion[1]}).get_state()),
-        sn.Options(cue="real").rules.rails,
-    )
+    at = Positions.of(posed({0: cushion[0], 1: cushion[1]}).get_state())
+    rails = sn.Options(cue="real").rules.rails
     level, raised = (prospects_of(at, spread, RULE_OF_THUMB, rails=r) for r in (NO_RAILS, rails))
     wider = prospects_of(at, Spread(1e-3 * (1.0 + np.radians(33.3) / TWICE)), RULE_OF_THUMB)
-    assert (
-        raised[1][0, 0] == pytest.approx(wider[1][0, 0], rel=0.05) and raised[1][0, 0] < 0.7 * level[1][0, 0]
-    )
+    assert raised[1][0, 0] == pytest.approx(wider[1][0, 0], rel=0.05)
+    assert raised[1][0, 0] < 0.7 * level[1][0, 0]
     assert raised[0][0] < level[0][0]
-    proposed = [
-        at_pots(VisitJudge({"cue": cue, "noise": {"aim_deg": 0.05}}), at, 30, np.array([3])).chances[0]
-        for cue in ("free", "real")
-    ]
+    judges = (VisitJudge({"cue": cue, "noise": {"aim_deg": 0.05}}) for cue in ("free", "real"))
+    proposed = [at_pots(judge, at, 30, np.array([3])).chances[0] for judge in judges]
     assert (proposed[1] < proposed[0]).all() and np.ptp(proposed[1]) > 10.0 * np.ptp(proposed[0])

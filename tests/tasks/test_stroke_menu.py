@@ -44,10 +44,8 @@ def wanted_of(at, options, pot, index):
     spread = Spread(core, noise.lapse, noise.lapse_factor)
     length = np.hypot(*(ghost[0] - at.positions[0, 0])) + np.hypot(*(to[0] - at.positions[0, ball[0]]))
     (chance,) = pot_chances(pot.tolerance[:, line], np.array([length]), spread)
-    out, left = (
-        np.empty((1, cue_ball_path.SEEN)),
-        (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int)),
-    )
+    out = np.empty((1, cue_ball_path.SEEN))
+    left = (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int))
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])
     balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(Dynamics.of(rules), at)
     cue_ball_path.predict(balls, np.zeros(1, int), stroke, at_pot, *none, law, out, left)
@@ -97,9 +95,8 @@ def test_what_is_foreseen_of_each_stroke_at_a_pot(options):
     seen, state = rows_of(env.reset(seed=2)[0])
     at = Positions.of(env)
     assert np.array_equal(state, at.observations()[:, BALLS_SIZE:])
-    chance, points, prospects, promise = (
-        seen[..., COLUMN[name]] for name in ("chance", "points", "prospects", "promise")
-    )
+    names = "chance", "points", "prospects", "promise"
+    chance, points, prospects, promise = (seen[..., COLUMN[name]] for name in names)
     told = promise > 0.0
     assert told.any()
     assert promise[told] == pytest.approx((chance * (7.0 * points + 35.0 * prospects) / 42.0)[told], rel=1e-5)
@@ -179,9 +176,8 @@ def test_all_that_is_seen_lies_in_the_space(speeds):
 def test_threads_and_vectors_change_no_bit():
     seen = []
     for threads in (1, 3):
-        env = sn.SnookerVectorEnv(
-            40, **MENU, noise="club", cue="real", threads=threads, autoreset_mode="SameStep"
-        )
+        options = MENU | {"noise": "club", "cue": "real", "autoreset_mode": "SameStep"}
+        env = sn.SnookerVectorEnv(40, **options, threads=threads)
         observed, rng, each = env.reset(seed=3)[0], np.random.default_rng(0), []
         for _ in range(4):
             each.append(observed)
@@ -216,9 +212,8 @@ def test_a_frame_has_safeties_the_break_off_and_decisions():
     first = env.agent_selection
     (rows,), state = rows_of(env.observe(first), CHOICES + 50)
     assert state.shape == (1, 30) and rows[108:156, 0].any() and not rows[156:, 0].any()
-    assert rows[108, COLUMN["speed"]] == pytest.approx(3.4 / 4.6) and rows[
-        108, COLUMN["top"]
-    ] == pytest.approx(0.1 / 0.4)
+    assert rows[108, COLUMN["speed"]] == pytest.approx(3.4 / 4.6)
+    assert rows[108, COLUMN["top"]] == pytest.approx(0.1 / 0.4)
     other = next(name for name in env.possible_agents if name != first)
     assert not rows_of(env.observe(other), CHOICES + 50)[0][..., 0].any()
     assert env.action_mask(first)[:156].tolist() == rows[:156, 0].tolist()
@@ -238,10 +233,8 @@ def test_the_decisions_after_a_foul(choice, miss):
     back = miss != "off"
     (rows,), _ = rows_of(env.observe(striker), CHOICES + 50)
     assert env.action_mask(striker)[156:].tolist() == rows[156:, 0].tolist() == [1, back]
-    assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0] and rows[156:, COLUMN["pot"]].tolist() == [
-        -1.0,
-        -1.0,
-    ]
+    assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0]
+    assert rows[156:, COLUMN["pot"]].tolist() == [-1.0, -1.0]
     before, lies = env.strokes, env.positions[0]
     env.step(choice)
     if choice == 7 or (choice == 157 and not back):
