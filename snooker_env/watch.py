@@ -111,15 +111,15 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
         options: dict[str, Any] = {**FRAME, "noise": args.noise, "opponent": opposite, "trust": args.trust}
         env = play_episode(who, args.seed, **options)
         return env, args.seed, [f"{label} A", f"{label} B"] if other == name else [label, other]
-    longest, its = None, args.seed
+    best, its = None, args.seed
     for seed in range(args.seed, args.seed + args.tries):
         env = play_episode(who, seed, layout=args.layout, noise=args.noise, cue="real")
-        if longest is None or env.points > longest.points:
-            longest, its = env, seed
+        if best is None or env.points > best.points:
+            best, its = env, seed
         if env.points >= args.at_least:
             break
-    assert longest is not None  # there is one try at least
-    return longest, its, [label]
+    assert best is not None  # there is one try at least
+    return best, its, [label]
 
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
