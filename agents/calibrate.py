@@ -17,6 +17,7 @@ testing the law.
 """
 
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -243,7 +244,7 @@ def _table(title, words, columns):
     return TextTable(title, ["", *columns], rows, 1, 1)
 
 
-def fit_law(real, args):
+def fit_law(real, args, made):
     """``law_fit`` with the matches of even numbers; exit code 0."""
     logs, laws = spread_laws(args.laws, args.frames)
     noises, figures = [law_of(**law) for law in laws], {name: [] for name in (*FIGURES, "long")}
@@ -266,7 +267,7 @@ def fit_law(real, args):
             "misfit": least,
             "profile": rows,
         }
-        write_json(args.json, report | {"frames": args.frames} | provenance())
+        write_json(args.json, report | {"frames": args.frames} | made)
     return 0
 
 
@@ -281,7 +282,8 @@ def main(argv=None):
     p.add_argument("--budget", type=int, default=120, help="average shots of a decision [120]")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the chance to win and who won here")
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
-    args = p.parse_args(sys.argv[1:] if argv is None else argv)
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
     try:
         integer("frames", args.frames, 2, 10**6)
         integer("budget", args.budget, FrameJudge.least, 10**6)
@@ -294,9 +296,10 @@ def main(argv=None):
         real = frames_of(args.file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         p.error(str(error))
+    made = provenance(shlex.join(["python", "-m", "agents.calibrate", *argv]), FIRST_SEED)
     snooker_env.warmup()
     if args.laws:
-        return fit_law(real, args)
+        return fit_law(real, args, made)
     base = LEVELS["professional"]
     played = play_frames([base.scale(scale) for scale in args.scales], args.frames, args.budget)
     names = [f"scale {scale:g}" for scale in args.scales]
@@ -320,7 +323,7 @@ def main(argv=None):
     show(parts)
     if args.json:
         report = {"figures": columns, "tactics": tactics, "chances": chances, "frames": args.frames}
-        write_json(args.json, report | provenance())
+        write_json(args.json, report | made)
     return 0
 
 

@@ -26,7 +26,7 @@ from scipy.optimize import least_squares
 
 import snooker_env as sn
 
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from . import line
 from .lengths import LENGTH, RAMP, START, print_lengths
 
@@ -203,10 +203,9 @@ def main():
     before = sn.Physics.preset("match", **BEFORE)
     travelled = print_lengths({"before": before})
     low, high = np.quantile(walk, (0.025, 0.975), axis=0)
-    save_json(
-        options.json,
+    save_figures(
+        options,
         {
-            "seed": options.seed,
             "fits": {name: values.tolist() for name, values in fits.items()},
             "interval": dict(zip(NAMES, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
             "e": left_open,

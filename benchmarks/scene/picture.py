@@ -40,7 +40,7 @@ def draw(figures, out):
         "professional's execution errors do. For scale, below the line: those errors, and the same shots aimed 1e-9 rad aside."
     )
     played = f"{figures['shots']} shots of each kind, physics {figures['physics']!r}"
-    foot = f"python -m benchmarks.scene, {played}; {provenance.line(figures['machine'])}"
+    foot = f"python -m benchmarks.scene, {played}; {provenance.line(figures)}"
     with picture_style.drawing() as plt:
         from matplotlib.colors import LogNorm, Normalize
 
