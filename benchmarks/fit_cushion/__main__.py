@@ -46,9 +46,9 @@ MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
 
 def read_measurements():
     """(incident speeds, rebound speeds [m/s], {(quantity, setting): (value, error or None)})."""
-    speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=2).T
+    speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=1).T
     with STROKES.open(encoding="utf-8", newline="") as file:
-        rows = csv.DictReader(row for row in file if not row.startswith("#"))
+        rows = csv.DictReader(file)
         found = {
             (row["quantity"], row["setting"]): (float(row["value"]), float(row["error"] or "nan"))
             for row in rows
