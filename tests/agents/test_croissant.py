@@ -21,6 +21,16 @@ def test_the_kept_metadata_are_those_of_the_files_as_they_are(folder):
     assert croissant.metadata(file, file.parent, croissant.address_of(folder)) == kept
 
 
+def test_the_command_writes_both(monkeypatch):
+    written = []
+    monkeypatch.setattr(
+        croissant, "write_json", lambda file, content: written.append((file, content["name"]))
+    )
+    assert croissant.main([]) == 0
+    files = [ROOT / folder / croissant.FILE for folder in croissant.PUBLISHED]
+    assert written == list(zip(files, ("snooker_env_measurements", "snooker_env_results"), strict=True))
+
+
 def test_every_measurement_is_described_with_all_its_columns():
     sets = json.loads(MEASURED.read_text(encoding="utf-8"))["recordSet"]
     columns = {}
