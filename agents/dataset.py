@@ -170,7 +170,7 @@ def write_dataset(folder, name, task, player, form, parts):
     )
     write_atomic(made / "README.md", card(name, task, player, figures, origin))
     lines = [f"{k},{','.join(f'{value:.12g}' for value in row)}" for k, row in enumerate(rows.tolist())]
-    write_atomic(made / "episodes.csv", "\n".join(["episode,seed,strokes,return,points,fouls", *lines, ""]))
+    write_atomic(made / "episodes.csv", "\n".join(["episode,seed,strokes,reward,points,fouls", *lines, ""]))
     how = {"rai:dataCollection": f"Simulated by `{origin['command']}` at commit {origin['commit']}."}
     words = Path(croissant.__file__).with_suffix(".json")
     described = croissant.metadata(words, made, name=name, description=about, **how)

@@ -101,7 +101,7 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     assert f"{data.total_steps} strokes of {data.total_episodes} whole episodes" in text
     rows = np.genfromtxt(folder / "episodes.csv", delimiter=",", names=True)
     assert rows["strokes"].tolist() == [len(one.actions) for one in long]
-    assert rows["return"].tolist() == [sum(one.rewards) for one in long] and rows["seed"][0] == seed
+    assert rows["reward"].tolist() == [sum(one.rewards) for one in long] and rows["seed"][0] == seed
     described = json.loads((folder / "croissant.json").read_text(encoding="utf-8"))
     assert described["name"].endswith(folder.name) and "stroke" in described["description"]
     for file in described["distribution"]:
