@@ -12,6 +12,7 @@ chance to win that the ``tactician`` sees before each stroke with the actual win
 """
 
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -261,7 +262,8 @@ def main(argv=None):
         "--picture", type=Path, metavar="FILE", help="draw the chances to win and the winners here"
     )
     p.add_argument("--json", type=Path, metavar="FILE", help="write every figure here")
-    args = p.parse_args(sys.argv[1:] if argv is None else argv)
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
     try:
         integer("frames", args.frames, 2, 10**6)
         integer("budget", args.budget, FrameJudge.least, 10**6)
@@ -272,6 +274,7 @@ def main(argv=None):
         real = frames_of(args.file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         p.error(str(error))
+    made = provenance(shlex.join(["python", "-m", "agents.calibrate", *argv]), FIRST_SEED)
     snooker_env.warmup()
     base = LEVELS["professional"]
     played = play_frames([base.scale(scale) for scale in args.scales], args.frames, args.budget)
@@ -296,7 +299,7 @@ def main(argv=None):
     show(parts)
     if args.json:
         report = {"figures": columns, "tactics": tactics, "chances": chances, "frames": args.frames}
-        write_json(args.json, report | provenance())
+        write_json(args.json, report | made)
     return 0
 
 

@@ -28,7 +28,7 @@ with needs("agents.curves"):
 
     import snooker_env
     from agents._lib.files import writable, write_atomic
-    from agents._lib.provenance import provenance, software
+    from agents._lib.provenance import provenance
     from snooker_env.benchmark import play_visits
     from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import choice, integer, refuse
@@ -162,11 +162,7 @@ def main(argv=None):
         p.error(str(error))
     torch.set_num_threads(1)  # such small networks are slower on more threads
     snooker_env.warmup()
-    made = {
-        "command": shlex.join(["python", "-m", "agents.curves", *argv]),
-        **provenance(),
-        "software": software(),
-    }
+    made = provenance(shlex.join(["python", "-m", "agents.curves", *argv]), args.seeds)
     rows = {name: ROWS[name].describe() for name in args.rows}
     head = {"visits": args.visits, "rows": rows, "made": made}
 

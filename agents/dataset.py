@@ -21,7 +21,8 @@ with needs("agents.dataset"):
     import numpy as np
 
     import snooker_env as sn
-    from agents._lib.files import keep_arrays, kept_arrays, write_atomic
+    from agents import croissant
+    from agents._lib.files import keep_arrays, kept_arrays, write_atomic, write_json
     from agents._lib.provenance import provenance
     from snooker_env.benchmark import HELD_OUT_SEED, TASKS
     from snooker_env.benchmark.tasks import task_of
@@ -149,11 +150,14 @@ def write_dataset(folder, name, task, player, form, parts):
     about = f"{player} plays {task.id} ({task.title}): whole episodes, one step per stroke"
     more = {"dataset_id": name, "minari_version": minari.__version__, "algorithm_name": player}
     storage.update_metadata(more | {"description": about, "requirements": [f"snooker-env=={sn.__version__}"]})
-    returns = []
+    rows = []
     for k, part in enumerate(parts):
         storage.update_episodes(episodes_of(part, seeds_of(k), k * TABLES))
-        returns.append(np.add.reduceat(part["rewards"], np.cumsum(part["lengths"]) - part["lengths"]))
-    returns = np.concatenate(returns)
+        first = np.cumsum(part["lengths"]) - part["lengths"]
+        sums = [np.add.reduceat(part[name].astype(float), first) for name in ("rewards", *INFOS)]
+        rows.append(np.column_stack([seeds_of(k), part["lengths"], *sums]))
+    rows = np.concatenate(rows)
+    returns = rows[:, 2]
     figures = {
         "episodes": len(returns),
         "strokes": storage.total_steps,
@@ -161,7 +165,16 @@ def write_dataset(folder, name, task, player, form, parts):
         "error": float(returns.std(ddof=1) / np.sqrt(len(returns))),
         "megabytes": float(storage.get_size()),
     }
-    write_atomic(made / "README.md", card(name, task, player, form, figures))
+    origin = provenance(
+        f"python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER", FIRST_SEED
+    )
+    write_atomic(made / "README.md", card(name, task, player, figures, origin))
+    lines = [f"{k},{','.join(f'{value:.12g}' for value in row)}" for k, row in enumerate(rows.tolist())]
+    write_atomic(made / "episodes.csv", "\n".join(["episode,seed,strokes,reward,points,fouls", *lines, ""]))
+    how = {"rai:dataCollection": f"Simulated by `{origin['command']}` at commit {origin['commit']}."}
+    words = Path(croissant.__file__).with_suffix(".json")
+    described = croissant.metadata(words, made, name=name, description=about, **how)
+    write_json(made / croissant.FILE, described)
     shutil.rmtree(folder, ignore_errors=True)
     made.rename(folder)
     return figures
@@ -200,17 +213,16 @@ def differing(folder, many):
     return wrong, len(numbers)
 
 
-def card(name, task, player, form, figures):
+def card(name, task, player, figures, origin):
     """Write the card of a data set: its contents and origin. docs/agents/datasets.md explains the fields."""
-    origin = provenance()
     return f"""# {name}
 
 {figures["strokes"]:,} strokes of {figures["episodes"]:,} whole episodes: `{player}` plays `{task.id}` ({task.title}),
 with execution errors of the level "{task.frozen_options["noise"]}". An episode brings {figures["return"]:.2f} +- {figures["error"]:.2f}
 (mean return, standard error).
 
-Made by `python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER`, snooker_env {origin["version"]},
-commit {origin["commit"]}, {origin["machine"]}.
+Made by `{origin["command"]}`, snooker_env {sn.__version__},
+commit {origin["commit"]}, {origin["machine"]}. `{croissant.FILE}` describes it for machines, `episodes.csv` has a line for each episode.
 """
 
 

@@ -198,9 +198,9 @@ def main(argv=None):
     snooker_env.warmup()
     for agent in agents:  # compile before timing
         play_visits(agent.player(0), 2)
-    protocol = {"layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED}
+    protocol: dict[str, object] = {"layouts": {name: len(s) for name, s in seeds.items()}}
     protocol |= {"against": references} | {axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}
-    report = {"command": f"python -m agents.evaluate {shlex.join(argv)}", **provenance()}
+    report = provenance(shlex.join(["python", "-m", "agents.evaluate", *argv]), HELD_OUT_SEED)
     report |= {"protocol": protocol | {"resamples": args.resamples}}
     report |= {"agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents], "results": []}
     why, code = "", 0

@@ -242,9 +242,8 @@ def markdown(report):
     """The whole report as a Markdown page."""
     if other := _other(report):
         return other.markdown(report)
-    version = report.get("version", "of unknown version")
-    where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
-    made = f"snooker_env {version}, at {where}"
+    of, where = report["software"], f"commit {report['commit']} on {report['machine']}"
+    made = f"snooker_env {of['snooker_env']}, at {where}, Python {of['python']}"
     return page(title(report), report["command"], made, parts(report, 160))
 
 

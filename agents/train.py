@@ -1,7 +1,6 @@
 """How does ``train.py`` train? It opens the run, plays its rounds, evaluates the agent and writes the results."""
 
 import json
-import os
 import shlex
 import sys
 from contextlib import ExitStack
@@ -14,7 +13,7 @@ import torch
 import snooker_env
 from agents._lib.files import write_atomic
 from agents._lib.lifecycle import command, python
-from agents._lib.provenance import commit, software
+from agents._lib.provenance import provenance
 
 from .evaluation.learning_curve import LearningCurve
 from .evaluation.training_summary import conclusion, evaluate, held_out, show
@@ -106,9 +105,8 @@ def judge_strokes(training, loop):
 def report(training, learned, figures, results, best, noise):
     """Write and print the results of a run, and the command that shows its best player with these errors."""
     out, settings = training.out, training.settings
-    results = {"command": settings.command, "settings": asdict(settings)} | results
-    results |= {"learned": learned, "evaluation": figures, "versions": software()}
-    results |= {"git_commit": commit(), "processors": os.cpu_count()}
+    results = provenance(settings.command, settings.seed) | {"settings": asdict(settings)} | results
+    results |= {"learned": learned, "evaluation": figures}
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)
     # half of the longest break, because the command searches other visits than the evaluation's

@@ -26,7 +26,7 @@ from snooker_env.planning import Planner, Positions
 from snooker_env.players import VISITS
 from snooker_env.tasks.noise import LEVELS, POT_SPEED, Noise
 
-from ._common.command import Command, at_least, run, save_json
+from ._common.command import Command, at_least, run, save_figures
 
 MEANS, COPIES = "search_30", 50
 """The player that chooses the strokes; repetitions of each drill pot's tolerance, each with different errors."""
@@ -232,7 +232,7 @@ def main():
                 f"{shares[0]:24s}{shares[1]}",
                 flush=True,
             )
-    save_json(args.json, figures)
+    save_figures(args, figures)
     return 0
 
 

@@ -29,7 +29,7 @@ from snooker_env.physics.table import MOUTH
 from snooker_env.progress import Progress
 
 from ._common import invariants as invariants
-from ._common.command import Command, at_least, run, save_json
+from ._common.command import Command, at_least, run, save_figures
 
 R = 0.02625
 D = 2 * R
@@ -521,7 +521,7 @@ def main():
         return int(not replay(*options.replay))
     found = fuzz(options.shots, options.seed, options.threads)
     print("\n".join(lines(found, options.seed)))
-    save_json(options.json, figures_of(found, options.seed))
+    save_figures(options, figures_of(found, options.seed))
     return int(bool(found.failures))
 
 

@@ -19,7 +19,7 @@ from snooker_env.players import FRAMES, ask_player, decision_seeds
 from snooker_env.players.opponents import PlayerOpponent
 from snooker_env.tasks.frames import Frames, Seat
 
-from ._common.command import Command, at_least, run, save_json
+from ._common.command import Command, at_least, run, save_figures
 
 AT_ONCE, LONGEST = 50, 2000
 
@@ -77,7 +77,7 @@ def main():
         share = f"{100 * won / args.frames:.0f} % [{low:.0f}, {high:.0f}]"
         print(f"{stronger.name} beats {weaker.name} in {share}: {elo:.0f}", flush=True)
         wins.append({"stronger": stronger.name, "weaker": weaker.name, "won": won, "elo": round(elo)})
-    save_json(args.json, {"frames": args.frames, "budget": args.budget, "pairs": wins})
+    save_figures(args, {"frames": args.frames, "budget": args.budget, "pairs": wins})
     return 0
 
 

@@ -22,7 +22,7 @@ from snooker_env.play.service import PERSON, Seats, Service
 from snooker_env.play.session import Session
 from snooker_env.players import player
 
-from ._common.command import Command, at_least, run, save_json
+from ._common.command import Command, at_least, run, save_figures
 
 LEVELS = "professional", "amateur", "club"
 AGENT = "tactician_100"
@@ -144,7 +144,7 @@ def main():
         print(
             f"From a click to motion: {middle(waits):.0f} ms, at most {max(waits):.0f}, over {len(waits)} strokes"
         )
-    save_json(args.json, {"links": links, "advice": asked, "review": [first, whole, *errors], "click": waits})
+    save_figures(args, {"links": links, "advice": asked, "review": [first, whole, *errors], "click": waits})
     return 0
 
 

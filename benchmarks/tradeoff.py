@@ -21,7 +21,7 @@ from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
 from ._common import shot_sets
-from ._common.command import Command, at_least, run, save_json
+from ._common.command import Command, at_least, run, save_figures
 from .speed.__main__ import impacts, median_impact, results
 from .speed.clock import Way, time_ways
 
@@ -240,7 +240,7 @@ def draw(figures, out):
             "Error against reference, of each fidelity and of the paper's scheme with N steps (euler:N): median, 99 % and worst.\n"
             "Lower left is better. Horizontal bar: effect of a professional's errors on the same shots, median to 99 %."
         )
-        foot = f"python -m benchmarks.tradeoff, physics {figures['physics']!r}; {provenance.line(figures['machine'])}"
+        foot = f"python -m benchmarks.tradeoff, physics {figures['physics']!r}; {provenance.line(figures)}"
         fig, axes = picture_style.page(
             plt,
             8.6,
@@ -344,7 +344,7 @@ def main():
 
 def measure(options):
     """Measure and print everything. Returns the figures."""
-    print(provenance.line())
+    print(provenance.line(options.made))
     impact_rows = play_impacts(options.impacts, options.physics, options.seed)
     print(
         f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same"
@@ -392,14 +392,12 @@ def measure(options):
     for sentence in says:
         print(f"* {sentence}")
     figures = {
-        "machine": provenance.machine(),
         "physics": options.physics,
         "impacts": impact_rows,
         "shots": sets,
         "recommendation": says,
     }
-    save_json(options.json, figures)
-    return figures
+    return save_figures(options, figures)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ you pass --fresh.
 import argparse
 import io
 import pickle
-import platform
 import shlex
 import sys
 import time
@@ -25,6 +24,7 @@ import torch
 
 import snooker_env
 from agents._lib.files import seal, unseal, write_atomic, write_json
+from agents._lib.provenance import provenance
 from agents.learning.export import layers_of_menu
 from agents.learning.frame_self_play import win_share
 from snooker_env.players import SeenPlayer, player
@@ -232,18 +232,12 @@ def main(argv=None):
         judged[name] = {"won": won, "error": error, "frames": args.frames}
         print(f"won {won:.1%} ± {1.96 * error:.1%} of {args.frames} frames against {name}")
     command = ["python", "-m", "examples.self_play", *(sys.argv[1:] if argv is None else argv)]
-    results = {
-        "command": shlex.join(command),
+    results = provenance(shlex.join(command), args.seed) | {
         "shots": run.shots,
         "seconds": round(run.seconds),
         "judged": judged,
         "curve": run.curve,
         "game": GAME,
-        "versions": {
-            "snooker_env": snooker_env.__version__,
-            "torch": torch.__version__,
-            "python": platform.python_version(),
-        },
     }
     file = io.BytesIO()
     torch.save(run.policy.state_dict(), file)

@@ -147,6 +147,8 @@ leaderboard() {
 
 part=${1:-}
 case $part in
-    physics | pictures | agents | weights | curves | leaderboard) shift && "$part" "$@" ;;
+    physics | pictures | agents | weights | curves | leaderboard)
+        shift && "$part" "$@" || exit
+        [[ -n ${LIST:-} ]] || python -m agents.croissant ;; # the checksums of what has changed
     *) echo "PART = '$part': must be physics, pictures, agents, weights, curves or leaderboard" >&2 && exit 2 ;;
 esac

@@ -1,31 +1,26 @@
-"""Where do figures come from? From the commit of the checkout, the machine and the versions of software."""
+"""Where do figures come from? The command, the commit of the checkout, the seed, the machine, and the versions that matter."""
 
-from snooker_env.benchmark.provenance import commit, software
-from snooker_env.benchmark.provenance import machine as computer
+from typing import Any
 
-__all__ = ["commit", "line", "machine", "provenance", "software"]
+from snooker_env.benchmark.provenance import commit, machine, software
 
-
-def machine():
-    """Platform, processor, cores, load and versions: a dict for JSON files."""
-    return computer() | software()
+__all__ = ["line", "provenance", "software"]
 
 
-def line(m=None):
-    """The same on one line. ``m`` is a kept dict of ``machine``, or None for this machine."""
-    m = m or machine()
-    load = "" if m["load"] is None else f", load {m['load']:.1f}"
-    return f"{m['cpu']}, {m['cores']} cores{load}, {m['platform']}, Python {m['python']}, numba {m['numba']}"
-
-
-def provenance():
-    """The origin of a report's figures: version, commit, machine in words, and versions."""
+def provenance(command: str, seed: int | list[int] | None) -> dict[str, Any]:
+    """What every file of results says of itself; ``seed`` is None where nothing is drawn at random."""
     m = machine()
-    words = f"{m['cpu']}, {m['cores']} cores, {m['platform']}"
     return {
-        "version": m["snooker_env"],
+        "command": command,
         "commit": commit() or "unknown",
-        "machine": words,
-        "python": m["python"],
-        "numpy": m["numpy"],
+        "seed": seed,
+        "machine": f"{m['cpu']}, {m['cores']} cores, {m['platform']}",
+        "load": m["load"],
+        "software": software(),
     }
+
+
+def line(made: dict[str, Any]) -> str:
+    """Machine, load and versions of what ``provenance`` returned, as one line."""
+    load, of = "" if made["load"] is None else f", load {made['load']:.1f}", made["software"]
+    return f"{made['machine']}{load}, Python {of['python']}, numba {of['numba']}"

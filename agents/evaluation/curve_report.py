@@ -116,7 +116,8 @@ def markdown(content: dict[str, Any]) -> str:
     commands = "\n".join(dict.fromkeys(one["command"] for one in made))
     where = "; ".join(
         dict.fromkeys(
-            f"{one['version']} at {one['commit']} on {one['machine']}, Python {one['python']}" for one in made
+            f"{one['software']['snooker_env']} at {one['commit']} on {one['machine']}, Python {one['software']['python']}"
+            for one in made
         )
     )
     return text_page(

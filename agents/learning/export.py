@@ -33,14 +33,10 @@ def keep_models(folder):
         if not run.is_dir():
             continue
         results = json.loads((run / "results.json").read_text(encoding="utf-8"))
-        kept = {
-            "command": results["command"],
-            "seed": results["settings"]["seed"],
-            "commit": results["git_commit"],
-        }
+        kept = {what: results[what] for what in ("command", "commit", "seed", "machine", "load", "software")}
         kept |= {"hours": round(results["seconds"] / 3600.0, 3), "shots": results["steps"]}
         kept |= {"imitated": results["settings"]["imitate"], "scores": results["evaluation"]}
-        kept |= {what: results[what] for what in ("learned", "versions")}
+        kept |= {"learned": results["learned"]}
         write_atomic(PRETRAINED / f"{name}.zip", pack_model(load_trained(run, "agent")))
         write_json(PRETRAINED / f"{name}.json", kept)
 

@@ -5,12 +5,14 @@ import argparse
 import contextlib
 import io
 import json
+import shlex
 import signal
 import sys
 from pathlib import Path
 
 from agents._lib import files
 from agents._lib.lifecycle import command
+from agents._lib.provenance import provenance
 
 RESULTS = Path(__file__).parents[2] / "results"
 PICTURES, FIGURES = RESULTS / "pictures", RESULTS / "physics"
@@ -69,8 +71,9 @@ class Command(argparse.ArgumentParser):
         """Parse the options and check that the files can be written.
 
         ``folder``: the folder of the files; ``pictures``: whether any are drawn; ``figures``: those of ``--from``,
-        or None if everything is measured.
+        or None if everything is measured; ``made``: what its file says about its origin.
         """
+        argv = sys.argv[1:] if argv is None else argv
         found = self.parse_args(argv)
         found.figures = None
         if getattr(found, "kept", None) is not None:
@@ -94,6 +97,9 @@ class Command(argparse.ArgumentParser):
             self.error(str(error))
         if found.pictures:
             pyplot()  # report a missing matplotlib before the work
+        if found.figures is None:
+            words = shlex.join(["python", "-m", f"benchmarks.{self._name}", *argv])
+            found.made = provenance(words, getattr(found, "seed", None))
         return found
 
 
@@ -171,11 +177,13 @@ def save_text(file, text):
     save_bytes(file, text.encode())
 
 
-def save_json(file, figures):
-    """Write every figure into ``file``, unless it is None."""
-    if file is not None:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        files.write_json(file, figures)
+def save_figures(options, figures):
+    """Write the figures and their origin into the file of ``--json``, if one was given. Returns them all."""
+    figures = options.made | figures
+    if options.json is not None:
+        options.json.parent.mkdir(parents=True, exist_ok=True)
+        files.write_json(options.json, figures)
+    return figures
 
 
 def save_figure(figure, file, **options):

@@ -36,7 +36,7 @@ from snooker_env.game.layouts import POT_WINDOWS
 from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise
 
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from . import published
 from .in_play import first_pots, in_play
 from .pot_shots import DERIVED, FIRM, LONG, MODERATE, POTS, aimed, directions, rolls, wilson
@@ -162,7 +162,7 @@ def main():
         found = published.fit_published(options.strokes, physics, table)
         for what, values in found:
             print(f"{what:94s}" + "  ".join(f"{value:.4f}" for value in values))
-        save_json(options.json, {"fit": found})
+        save_figures(options, {"fit": found})
         return
     shots = [aimed(pot, physics, table, speed) for pot in POTS for speed in (None, FIRM)]
     rows = {
@@ -212,7 +212,7 @@ def main():
             text_table(["level", "beside what is published", "ours", "published", "outside by"], beside, 2)
         )
     )
-    save_json(options.json, {"pots": rows, "direction_deg": turned, "in_play": plays})
+    save_figures(options, {"pots": rows, "direction_deg": turned, "in_play": plays})
 
 
 if __name__ == "__main__":

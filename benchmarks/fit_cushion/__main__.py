@@ -27,7 +27,7 @@ from scipy.optimize import least_squares
 
 import snooker_env as sn
 
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from . import line
 from .lengths import LENGTH, RAMP, START, print_lengths
 
@@ -47,9 +47,9 @@ MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
 
 def read_measurements():
     """(incident speeds, rebound speeds [m/s], {(quantity, setting): (value, error or None)})."""
-    speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=2).T
+    speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=1).T
     with STROKES.open(encoding="utf-8", newline="") as file:
-        rows = csv.DictReader(row for row in file if not row.startswith("#"))
+        rows = csv.DictReader(file)
         found = {
             (row["quantity"], row["setting"]): (float(row["value"]), float(row["error"] or "nan"))
             for row in rows
@@ -204,10 +204,9 @@ def main():
     before = sn.Physics.preset("match", **BEFORE)
     travelled = print_lengths({"before": before})
     low, high = np.quantile(walk, (0.025, 0.975), axis=0)
-    save_json(
-        options.json,
+    save_figures(
+        options,
         {
-            "seed": options.seed,
             "fits": {name: values.tolist() for name, values in fits.items()},
             "interval": dict(zip(NAMES, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
             "e": left_open,

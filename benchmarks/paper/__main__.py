@@ -12,7 +12,7 @@ few seconds; the pictures (``paper.png``, ``paper_data.png``) need matplotlib, w
 
 import numpy as np
 
-from .._common.command import Command, run, save_json
+from .._common.command import Command, run, save_figures
 from . import other_data, paper_shots
 from .paper_shots import MEASURED_TO, QUANTITIES
 
@@ -266,7 +266,7 @@ def main(argv=None):
         print_figures(figures)
         print_throw(figures["throw_a14"], figures["throw_domenech"])
         print_cushion(figures["cushion"])
-        save_json(options.json, figures)
+        save_figures(options, figures)
     if options.pictures:
         draw(options.folder, figures)
 

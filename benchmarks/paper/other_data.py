@@ -70,7 +70,7 @@ def solved_throw(cut, v0, topspin, physics, fidelity, *, after_slip=False):
 
 
 def _read(name):
-    return np.genfromtxt(FOLDER / name, delimiter=",", names=True, skip_header=1, deletechars="")
+    return np.genfromtxt(FOLDER / name, delimiter=",", names=True, deletechars="")
 
 
 A14_SHOTS = {f"{kind} {speed} m/s": (kind, speed) for kind in ("stun", "roll") for speed in (0.447, 1.341)}
@@ -176,7 +176,7 @@ those below 1.5 m/s."""
 
 def cushion():
     """Measured rebounds: the models' residuals [m/s] in all, below and above ``FAST_REBOUND``."""
-    speed, seen = np.loadtxt(REBOUNDS, delimiter=",", skiprows=2).T
+    speed, seen = np.loadtxt(REBOUNDS, delimiter=",", skiprows=1).T
     fast = speed > FAST_REBOUND
     out = {"incident": speed.tolist(), "measured": seen.tolist(), "n_fast": int(fast.sum()), "models": {}}
     for name, model in CUSHIONS.items():

@@ -26,7 +26,7 @@ R, E_B, MU_BB = PAPER.R, PAPER.e_b, PAPER.friction_law[0]
 
 def tables():
     """The rows of Tables 1 and 2 as printed."""
-    return np.genfromtxt(TABLES, delimiter=",", names=True, skip_header=1)
+    return np.genfromtxt(TABLES, delimiter=",", names=True)
 
 
 def impact(v0, topspin, cut, physics=PAPER, fidelity="reference"):

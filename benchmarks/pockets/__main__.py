@@ -15,7 +15,7 @@ import numpy as np
 import snooker_env as sn
 from agents._lib.tables import text_table
 
-from .._common.command import Command, run, save_json
+from .._common.command import Command, run, save_figures
 from . import openings
 from .windows import CORNER, MIDDLE, Paths, alone, windows
 
@@ -74,7 +74,7 @@ def main():
     options = Command("pockets", __doc__).options()
     physics = sn.Physics.preset("match")
     found = {"openings": print_openings(physics), "speeds": SPEEDS, "windows": print_windows(physics)}
-    save_json(options.json, found)
+    save_figures(options, found)
 
 
 if __name__ == "__main__":

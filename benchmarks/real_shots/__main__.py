@@ -25,7 +25,7 @@ from agents._lib import provenance
 from agents._lib.tables import text_table
 from snooker_env.physics.parameters import PRESETS, Physics
 
-from .._common.command import Command, run, save_json
+from .._common.command import Command, run, save_figures
 from . import constants, tracks, verdict
 from .paths import Judge
 from .picture import draw
@@ -55,7 +55,7 @@ def main(argv=None):
         shots = tracks.read(options.file)
     except ValueError as error:
         parser.error(str(error))
-    save_json(options.json, measure(options, shots))
+    save_figures(options, measure(options, shots))
 
 
 def constants_of(options):
@@ -66,7 +66,7 @@ def constants_of(options):
 
 def measure(options, shots):
     """Measure and print everything. Returns the figures."""
-    print(provenance.line())
+    print(provenance.line(options.made))
     physics = constants_of(options)
     if options.fit:
         used = [s for s in shots if part(s.id) == USED]
@@ -84,7 +84,6 @@ def measure(options, shots):
         strikes.append(strike := fit(judge, options.seed)[0])
         found.append({"part": part(shot.id)} | verdict.judge_shot(judge, strike))
     figures = {
-        "machine": provenance.machine(),
         "physics": options.physics,
         "constants": {k: getattr(physics, k) for k in ("R", *constants.SEARCHED)},
         "shots": found,

@@ -32,7 +32,7 @@ from snooker_env import simulation
 from snooker_env.physics.engine import EventKind, Status
 
 from .._common import variants
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from ..speed.clock import Way, time_ways
 from .models import MODELS, SCENES, STANDARD, head_on_stun
 from .picture import draw
@@ -148,7 +148,7 @@ def main():
 def measure(options):
     """Measure and print everything; the figures."""
     print(
-        f"{provenance.line()}\n{options.shots} shots a scene, physics {PHYSICS!r}, fidelity 'standard'; * where it matters"
+        f"{provenance.line(options.made)}\n{options.shots} shots a scene, physics {PHYSICS!r}, fidelity 'standard'; * where it matters"
     )
     scenes, starts = {}, []
     for scene, make in SCENES.items():
@@ -185,14 +185,12 @@ def measure(options):
     for sentence in lines:
         print(f"* {sentence}")
     figures = {
-        "machine": provenance.machine(),
         "physics": PHYSICS,
         "shots": options.shots,
         "scenes": scenes,
         "says": lines,
     }
-    save_json(options.json, figures)
-    return figures
+    return save_figures(options, figures)
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ def draw(figures, out):
         "than a tenth of that. Right: median and range over the kinds of shots."
     )
     played = f"{figures['shots']} shots of each of {len(scenes)} kinds, physics {figures['physics']!r}"
-    foot = f"python -m benchmarks.scene, {played}; {provenance.line(figures['machine'])}"
+    foot = f"python -m benchmarks.scene, {played}; {provenance.line(figures)}"
     with picture_style.drawing() as plt:
         title = "What each part of the physics is worth: shots played without it"
         fig, axes = picture_style.page(

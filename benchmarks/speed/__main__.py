@@ -31,7 +31,7 @@ from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
 
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from . import against_commit, clock, first_shot, steps
 from .clock import time_shots
 
@@ -251,8 +251,10 @@ def main():
     )
     options = parser.options()
     parts = options.parts or (() if options.against else PARTS)
-    figures: dict[str, object] = {"machine": provenance.machine()}
-    print(provenance.line() + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
+    figures: dict[str, object] = {}
+    print(
+        provenance.line(options.made) + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls")
+    )
     if "impacts" in parts:
         figures["impacts"] = measure_impacts(options.shots, options.repeats, options.seed)
     if "shots" in parts:
@@ -264,7 +266,7 @@ def main():
     if options.against:
         found = measure_against_commit(options.against, options.shots, options.repeats, options.seed)
         figures[f"against {options.against}"] = found
-    save_json(options.json, figures)
+    save_figures(options, figures)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import numpy as np
 from agents._lib.tables import text_table
 
 from .. import fuzz
-from .._common.command import Command, at_least, run, save_json
+from .._common.command import Command, at_least, run, save_figures
 from .euler import euler_lines, euler_table
 from .impacts import IMPACT_LIMITS, impact_extremes
 from .shots import SHOT_LIMITS, shot_extremes
@@ -99,7 +99,7 @@ def measure(options):
         "fuzz": fuzz.figures_of(found, options.seed) if found else None,
         "failed": failed,
     }
-    save_json(options.json, figures)
+    save_figures(options, figures)
     return figures
 
 

@@ -119,10 +119,9 @@ def test_another_file_and_other_visits_are_refused(tmp_path, refused):
 
 MADE = {
     "command": "python -m agents.curves",
-    "version": "1.0.0",
     "commit": "abc",
     "machine": "a machine",
-    "python": "3.11",
+    "software": {"snooker_env": "1.0.0", "python": "3.11"},
 }
 
 

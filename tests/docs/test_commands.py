@@ -62,10 +62,12 @@ ELSEWHERE = {
     "agents.evaluate": "tests/commands/test_lifecycle.py",
     "agents.report": "tests/commands/test_lifecycle.py",
     "agents.curves": "tests/agents/test_curves.py",
+    "agents.croissant": "tests/agents/test_croissant.py",
     "agents.dataset": "tests/agents/evaluation/test_dataset.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "agents.learn_worth": "tests/agents/learning/test_frame_worth.py",
     "agents.calibrate": "tests/agents/evaluation/test_calibrate.py",
+    "paper/build.py": "tests/repository/test_release.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
     "examples.self_play": "tests/examples/test_self_play.py",
     "examples.ppo_single_file": "tests/examples/test_ppo_single_file.py",
@@ -78,8 +80,6 @@ ELSEWHERE = {
 
 NOT_RUN = {
     "coverage": "it would run this suite within the suite; it is of the extra dev, which tests do not need",
-    "build": "of a release: .github/workflows/release.yml runs it; the wheel is built by tests/repository",
-    "twine": "of a release: .github/workflows/release.yml runs it",
     "tests.library_versions": "it installs other versions of libraries, for half an hour",
 }
 

@@ -12,6 +12,7 @@ import yaml
 
 import snooker_env as sn
 from tests.docs.pages import DOCS, blocks, links
+from tests.docs.test_figures import unsourced
 from tests.processes import ROOT
 
 hatchling = pytest.importorskip("hatchling.build")
@@ -72,6 +73,46 @@ def test_one_line_sets_the_address_everywhere(tmp_path):
     assert all(place.startswith(address) for place in named.values())
     assert f"{address}/raw/v9.0/results/pictures/break.gif" in after
     assert yaml.safe_load((tmp_path / "CITATION.cff").read_text())["repository-code"] == address
+
+
+def test_the_wheel_and_the_list_of_gymnasium_name_the_same_lower_bound():
+    (bound,) = re.findall(r'"gymnasium>=([\d.]+),', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    (entry,) = blocks(RELEASE, "markdown")
+    assert f"badge/Gymnasium-v{bound}-blue" in entry
+    assert 2 <= len(re.findall(r"[.:] ", entry.rpartition("\n\n")[2])) <= 5
+
+
+PAPER = (ROOT / "paper/paper.md").read_text(encoding="utf-8")
+BODY = PAPER.split("\n---\n", 1)[1]
+
+
+def test_the_paper_keeps_the_journal_s_form():
+    head = yaml.safe_load(PAPER.split("\n---\n")[0])
+    assert {"title", "tags", "authors", "affiliations", "date", "bibliography"} <= set(head)
+    parts = re.findall("^# (.*)$", BODY, re.MULTILINE)
+    for part in (
+        "Summary",
+        "Statement of need",
+        "State of the field",
+        "Software design",
+        "AI usage disclosure",
+    ):
+        assert part in parts
+    assert parts[-1] == "References" and 750 <= len(BODY.split()) <= 1250
+    cited = set(re.findall(r"@(\w+)", BODY))
+    assert cited == set(
+        re.findall(r"^@\w+\{(\w+),", (ROOT / "paper/paper.bib").read_text(encoding="utf-8"), re.M)
+    )
+    assert unsourced(PAPER) == []
+
+
+def test_the_paper_becomes_a_page(tmp_path):
+    pytest.importorskip("pypandoc", reason="of the extra publish")
+    command = [sys.executable, str(ROOT / "paper/build.py"), str(tmp_path / "paper.html")]
+    subprocess.run(command, check=True, capture_output=True, cwd=tmp_path)
+    page = (tmp_path / "paper.html").read_text(encoding="utf-8")
+    assert page.count('id="ref-') > 10 and page.count("data:image/png") == 2 and "(<strong>" not in page
+    assert "numerical simulations of the frictional collisions" in page.lower()
 
 
 def test_what_is_cited_is_what_is_released():

@@ -1,5 +1,8 @@
 """Is a data set what it says: the player's own strokes, on tables of training, gone on with after an interruption?"""
 
+import hashlib
+import importlib.util
+import json
 import shutil
 
 import gymnasium
@@ -96,6 +99,18 @@ def test_it_is_read_by_minari_and_a_longer_one_begins_with_the_shorter(tmp_path,
     assert abs((folder / "data" / "main_data.hdf5").stat().st_size - before) < 1000
     text = (folder / "README.md").read_text(encoding="utf-8")
     assert f"{data.total_steps} strokes of {data.total_episodes} whole episodes" in text
+    rows = np.genfromtxt(folder / "episodes.csv", delimiter=",", names=True)
+    assert rows["strokes"].tolist() == [len(one.actions) for one in long]
+    assert rows["reward"].tolist() == [sum(one.rewards) for one in long] and rows["seed"][0] == seed
+    described = json.loads((folder / "croissant.json").read_text(encoding="utf-8"))
+    assert described["name"].endswith(folder.name) and "stroke" in described["description"]
+    for file in described["distribution"]:
+        assert hashlib.sha256((folder / file["@id"]).read_bytes()).hexdigest() == file["sha256"]
+    if importlib.util.find_spec("mlcroissant"):
+        import mlcroissant
+
+        records = mlcroissant.Dataset(jsonld=folder / "croissant.json").records("episodes_csv")
+        assert next(iter(records))["episodes_csv/seed"] == seed
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ def test_json_and_markdown(models, tmp_path, capsys):
     files = outputs(tmp_path / "new")
     assert evaluate.main([*agents, *options.split(), "paper,mu_bb=marlow", *files]) == 0
     found = read(tmp_path / "new" / "r.json")
-    names = "command version commit machine python numpy protocol agents results"
+    names = "command commit seed machine load software protocol agents results"
     assert sorted(found) == sorted(names.split())
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
