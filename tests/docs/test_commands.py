@@ -80,7 +80,6 @@ ELSEWHERE = {
 
 NOT_RUN = {
     "coverage": "it would run this suite within the suite; it is of the extra dev, which tests do not need",
-    "tests.library_versions": "it installs other versions of libraries, for half an hour",
 }
 
 DECLARED = {
