@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Makes anew what results/ keeps. In a clone with the extras train, test, render and data, on a quiet machine:
 #
-#     bash results/make.sh PART        physics: charts of benchmarks and their figures, some minutes;
+#     bash results/make.sh PART        all: every part but weights, days
+#                                      physics: charts of benchmarks and their figures, some minutes;
 #                                      with TRACKED=FILE the real shots of that file, too
 #                                      pictures: charts of kept figures, diagrams, films, screenshots, README's break, some minutes
 #                                      agents: trains the models of results/weights, compares all players, hours
@@ -147,8 +148,9 @@ leaderboard() {
 
 part=${1:-}
 case $part in
+    all) for part in physics pictures agents curves leaderboard; do bash results/make.sh "$part" || exit; done ;;
     physics | pictures | agents | weights | curves | leaderboard)
         shift && "$part" "$@" || exit
         [[ -n ${LIST:-} ]] || python -m agents.croissant ;; # the checksums of what has changed
-    *) echo "PART = '$part': must be physics, pictures, agents, weights, curves or leaderboard" >&2 && exit 2 ;;
+    *) echo "PART = '$part': must be all, physics, pictures, agents, weights, curves or leaderboard" >&2 && exit 2 ;;
 esac
