@@ -3,7 +3,7 @@ result.
 
     python train.py                          MaskablePPO on the menu of strokes, from scratch: three minutes on two cores
     python train.py --steps 8192             a first try: half a minute
-    python train.py --agent ppo_value --steps 1507328 --imitate 153600   policy and value of the planner: 17 minutes
+    python train.py --agent ppo_value --steps 1507328 --imitate 153600   policy and value of the planner: 45 minutes
     python train.py --agent stroke_value     a player that simulates no shots: 15 minutes
     python train.py --agent ppo_target --seed 1 --out runs/mine
     python train.py --resume --out runs/mine     continue, bit for bit, after Ctrl-C, a kill or a power cut

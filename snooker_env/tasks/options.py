@@ -130,8 +130,8 @@ class Options:
         "visit": build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several.
     layout : str, default "default"
         How tables are dealt (docs/environment/layouts.md): "opened", "held_out", "safety", "held_out_safety", "escape",
-        "held_out_escape", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
-        "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
+        "held_out_escape", "break_off", "break_off:N" (a rack of N reds), "line_up", "colours", "random:N" (N reds),
+        "snookered", "pots:easy", "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : str, default "box"
         "box": numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540)
         unless ``says`` adds more. "strokes": one integer that means a stroke on a menu for the position, in [0, 108), in a
@@ -145,20 +145,20 @@ class Options:
         array of what a player foresees of each stroke on the menu.
         "default": "pots", in a frame "flat".
     noise : str, dict or Noise, default "none"
-        Execution errors: "none", "professional", "amateur", "club", "robot", "olympiad", or standard deviations as a
+        Execution errors: "none", "professional", "amateur", "club", "beginner", "robot", "olympiad", or standard deviations as a
         dict of the fields of ``snooker_env.tasks.Noise``.
     reward : str, default "points"
         "points"; of a visit "points_and_fouls", "pots" or "legal"; of a frame "win"; of a match also "frames".
     elevation : bool or float, default False
-        Whether a box action holds the elevation of the cue: up to 30 degrees, or up to a number of degrees from 5 to 70.
+        Whether a box action has a number for the elevation of the cue: up to 30 degrees, or up to the degrees given (5 to 70).
     placement : bool, default False
-        Whether a box action holds the place of a cue ball in hand.
+        Whether a box action has two numbers for the place of a cue ball in hand.
     speeds : int, default 9
         Cue speeds along each pot of the menu, from 2 to 20: it has 12 times as many strokes, in a frame 50 more.
     physics : str, dict, Physics or None, default "paper"
-        "paper", "match", or a dict of overrides, as ``Physics.of`` takes them; the radius of the balls is snooker's.
+        "paper", "match", or a dict of overrides as ``Physics.of`` takes them; balls keep the radius of snooker balls.
     table : str or Table, default "match"
-        "match", "tight", or a ``Table`` whose noses are where snooker's are.
+        "match", "tight", or a ``Table`` with cushions where a snooker table has them.
     fidelity : str, default "standard"
         How impacts are solved (docs/physics/fidelity.md): "fast", "standard", "reference" or "euler:N".
     cue : str, default "free"
@@ -166,7 +166,7 @@ class Options:
     conditions : str, default "fixed"
         "drawn": each episode draws eight constants of its table (docs/environment/conditions.md). Infos hold them.
     observe_conditions : bool, default False
-        Whether observations hold the constants drawn, from -1 to 1.
+        Whether observations include the drawn constants, scaled to [-1, 1].
     one_stroke : bool, default False
         Whether an episode ends with its first stroke; in a frame with the first that is no foul, after 20 steps at most.
         Not of a match.
