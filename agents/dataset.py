@@ -166,7 +166,8 @@ def write_dataset(folder, name, task, player, form, parts):
         "megabytes": float(storage.get_size()),
     }
     origin = provenance(
-        f"python -m agents.dataset --task {task.id} --player {player} --form {form} --out FOLDER", FIRST_SEED
+        f"python -m agents.dataset --task {task.id} --player {player} --form {form} --strokes {storage.total_steps} --out FOLDER",
+        FIRST_SEED,
     )
     write_atomic(made / "README.md", card(name, task, player, figures, origin))
     lines = [f"{k},{','.join(f'{value:.12g}' for value in row)}" for k, row in enumerate(rows.tolist())]

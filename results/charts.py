@@ -279,7 +279,7 @@ def draw_speed(folder):
     """How the time of a shot grows."""
     figures = read("speed")
     found = figures["growth"]
-    foot = f"{figures['command']}; {provenance.line(figures['machine'])}"
+    foot = f"{figures['command']}; {provenance.line(figures)}"
     note = "Fidelity standard. Kernel: the compiled engine alone. simulate_batch: with its checks of the input and its result objects."
     with style.drawing() as plt:
         figure, ((by_balls, by_event), (by_batch, by_thread)) = style.page(

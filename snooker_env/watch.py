@@ -90,6 +90,8 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
         raise refuse("at_least", args.at_least, "must be left out with --frame")
     integer("seed", args.seed, 0, 2**63)
     integer("tries", args.tries, 1, 10**9)
+    if args.out and args.out.is_dir():
+        raise refuse("out", str(args.out), "must be a file, not a folder")
     try:
         if args.out:
             args.out.parent.mkdir(parents=True, exist_ok=True)

@@ -28,10 +28,13 @@ class Lock:
             self._path.write_text(
                 f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n"
             )
+        self._file = self._path.stat()
 
     def release(self):
+        """Release the folder. If the folder was moved and another run began at its old path, that run's lock stays."""
         with suppress(OSError):
-            self._path.unlink()
+            if os.path.samestat(self._file, self._path.stat()):
+                self._path.unlink()
         self._lock.release()
 
     def __enter__(self):

@@ -35,8 +35,6 @@ BLUE, ORANGE, GREEN, PURPLE, SKY, AMBER, GREY = (
 )
 """After Okabe and Ito: colour-blind readers can distinguish them."""
 SERIES = (BLUE, ORANGE, GREEN, PURPLE, AMBER, SKY, GREY)
-HEAT, BALANCE = "YlGnBu", "PuOr_r"
-"""Colour maps: from low to high; from below one to above one."""
 FAMILY = "Inter of snooker_env"
 
 _FONTS = Path(snooker_env.render.__file__).parent / "fonts"

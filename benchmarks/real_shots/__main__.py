@@ -91,7 +91,7 @@ def measure(options, shots):
     }
     say(figures)
     if options.pictures:
-        draw(figures, judges, strikes, options.folder / FILE)
+        draw(options.made | figures, judges, strikes, options.folder / FILE)
     return figures
 
 

@@ -24,7 +24,7 @@ def chosen(shots):
 def draw(figures, judges, strikes, out):
     """The picture; ``judges`` and ``strikes`` in the order of ``figures["shots"]``."""
     shots = figures["shots"]
-    foot = f"python -m benchmarks.real_shots FILE; {provenance.line(figures['machine'])}"
+    foot = f"python -m benchmarks.real_shots FILE; {provenance.line(figures)}"
     note = (
         "Dots: measured, the cue ball blue; rings: where the balls begin. Lines: the engine, with one set of constants for all shots;\n"
         "only the strike is fitted. Right: the cue ball's root mean square error over a whole shot; left: shots at 10, 50 and 90 % of it."

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._lib.check import refuse_what
+from .._lib.check import choice, refuse_what
 from .._lib.types import Floats, Ints
 from ..planning import Position, Positions, Proposals, Search, clear_paths, pots
 from ..planning.proposals import Asking, strokes_at
@@ -177,6 +177,8 @@ def coach(
     if not kept:
         raise refuse_what("strokes", "none", "must hold at least one stroke")
     options = agree_options(kept, options)
+    if isinstance(target, str):
+        choice("target", target, LEVELS)
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)

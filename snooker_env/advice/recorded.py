@@ -263,6 +263,8 @@ def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, An
         raise refuse("path", str(path), allowed)
     if kept.get("version") != VERSIONS[form] or kept["version"] is True:
         raise refuse(f"version of {path}", kept.get("version"), f"must be {VERSIONS[form]}")
+    if not isinstance(kept.get("strokes"), list):
+        raise refuse_what(f"strokes of {path}", f"a {type(kept.get('strokes')).__name__}", "must be a list")
     try:
         with in_file(path):
             return readers[form](kept)

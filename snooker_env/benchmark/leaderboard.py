@@ -91,7 +91,7 @@ def _row(result: dict[str, Any], task: Task, markdown: bool) -> list[str]:
 def _in_short(shots: int) -> str:
     """A number of shots with three digits: 18.4 M."""
     for size, unit in ((1e9, " G"), (1e6, " M"), (1e3, " k")):
-        if shots >= size:
+        if shots >= 0.9995 * size:
             return f"{shots / size:.3g}{unit}"
     return str(shots)
 

@@ -156,6 +156,9 @@ class PlayHandler(BaseHTTPRequestHandler):
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         token, _, name = parts.path.removeprefix("/").partition("/")
+        name = re.sub(
+            "^/+(?=api/)", "", name
+        )  # clients append "/api/state" to the address, which ends with "/"
         self.who = self.server.whose(token if parts.path.startswith("/") else "")
         if not self.who:
             raise self._last(403, "the address must hold this server's token: open the one that it printed")

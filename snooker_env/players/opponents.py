@@ -1,5 +1,6 @@
 """Who sits opposite the agent of a frame? A player, asked once for all tables that wait, or several in a pool."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from .choices import GhostBall
 from .model_options import of_others
 from .opponent_pool import OpponentPool
 from .player import Player, Strokes
-from .resolver import is_name
+from .resolver import PROGRAM
 from .resolver import player as player_of
 from .saved import FittingModel, SavedNetwork
 from .seen import SeenPlayer
@@ -130,10 +131,15 @@ def opponent_of(opponent: str | Path | Player | OpponentPool, options: Options) 
     if (
         isinstance(opponent, str)
         and "," in opponent
-        and not is_name(opponent)
-        and not Path(opponent).exists()
+        and not opponent.startswith(PROGRAM)
+        and not os.path.exists(opponent)
     ):
-        opponent = OpponentPool(opponent.split(","))
+        names = [name.strip() for name in opponent.split(",")]
+        if "none" in names:
+            raise refuse(
+                "opponent", opponent, "must be 'none' alone, or names of players with commas between them"
+            )
+        opponent = OpponentPool(names)
     if isinstance(opponent, OpponentPool):
         return PoolOpponent(opponent, options)
     if isinstance(opponent, type):

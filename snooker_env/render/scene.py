@@ -192,7 +192,7 @@ class Film:
 
     def _cue(self, t):
         """The cue at a time: drawn back, then forward to the ball and through it; None after ``FOLLOW``."""
-        if self._strike is None or t >= FOLLOW:
+        if not self._strike or t >= FOLLOW:
             return None
         speed, aim, elevation = (self._strike[name] for name in ("speed", "aim", "elevation"))
         back = 0.02 + (0.06 + 0.02 * min(5.0, speed)) * np.sin(np.pi * (max(-t, 0.0) / LEAD) ** 0.6)

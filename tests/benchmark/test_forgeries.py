@@ -272,3 +272,35 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
     assert refused[0].endswith("as on fresh seeds")
     honest = judge(HARD, agent(), episodes=100)
     assert afresh(honest, agent(), 100, 6_000_000)[2] == []
+
+
+def forged(record, task, episodes, better):
+    """The record with the strokes from the second on that ``better`` plays after the same first ones, and its rows."""
+    hindsight, played = sn.player(better), strokes_of(record)
+
+    class After:
+        def at(self, rules):
+            self.player, self.number = hindsight.at(rules), -1
+            return self
+
+        def play(self, positions, seeds):
+            self.number += 1
+            if self.number:
+                return self.player.play(positions, seeds)
+            return sn.player(record["agent"]["label"]).at(self.player.options).play(positions, seeds)
+
+    other = judge(task, Agent(label="after", sources=(After(),), training_shots=0), episodes=episodes)
+    assert all(a[0].tobytes() == b[0].tobytes() for a, b in zip(strokes_of(other), played, strict=True))
+    other["agent"] |= {name: record["agent"][name] for name in ("label", "sources", "training_shots")}
+    other["timing"]["simulated_shots"] = record["timing"]["simulated_shots"]
+    return complete(other, task)
+
+
+def test_hindsight_from_the_second_stroke_on():
+    """The first stroke is that of ghost_ball, all others are a better player's."""
+    record = judge(BREAK, Agent.of("ghost_ball"), episodes=40)
+    other = forged(record, BREAK, 40, "best_pot")
+    assert other["figures"]["score"]["value"] > 1.5 * record["figures"]["score"]["value"]
+    refused = faults(other)
+    assert refused and all("ghost_ball plays another stroke than number " in line for line in refused)
+    assert not any("number 0 " in line for line in refused)

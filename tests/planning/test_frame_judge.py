@@ -241,3 +241,14 @@ def test_safeties_that_promise_most_are_looked_at():
     safe = slice(PLANS[1].looks[0], PLANS[1].looks[0] + round(KEPT * PLANS[1].looks[1]))
     assert speeds[1][0, safe, 0].max() < np.median(speeds[0][0, safe, 0])
     assert [samples for _, samples in asked] == [1, SURE_OF] and asked[0][0] > 2 * asked[1][0]
+
+
+def test_many_positions_are_judged_as_each_alone():
+    at = positions_of(frames_in_play(12, OPTIONS, strokes=5, seed=11))
+    at = at[np.flatnonzero(~at.over)]
+    keys = np.arange(len(at)) + 70
+    together = Search(judge()).rank(at, keys)
+    for k in range(len(at)):
+        (alone,) = Search(judge()).rank(at[[k]], keys[[k]])
+        assert np.array_equal(together[k].strokes.values, alone.strokes.values)
+        assert all(map(np.array_equal, together[k][1:], alone[1:]))

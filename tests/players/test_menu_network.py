@@ -5,6 +5,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import play_visits, summary
+from snooker_env.players import VISITS
 from snooker_env.players.menu_network import MenuNetwork
 from snooker_env.players.weights import learned_menu
 from tests.processes import python
@@ -57,3 +58,12 @@ strokes = sn.player("strokes").at({"task": "frame"}).play(env, [1])
 print(strokes.values.shape)
 """
     assert "(1, 5)" in python(code)[0]
+
+
+def test_one_position_or_many_are_the_same_bits():
+    env = sn.SnookerVectorEnv(12, **OPTIONS, **VISITS)
+    env.reset(seed=2)
+    at, player = sn.planning.Positions.of(env), sn.player("strokes").at(env)
+    together = player.play(at, np.arange(12)).values
+    alone = [player.play(at[[k]], [k]).values[0] for k in range(12)]
+    assert np.array_equal(together, alone)

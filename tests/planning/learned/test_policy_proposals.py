@@ -103,3 +103,11 @@ def test_a_trained_policys_strokes_can_be_played(learned, layout):
     before = count_shots()
     ranked = Search(JUDGE, 30, learned).rank(at, np.arange(5))
     assert [len(one.strokes) for one in ranked] == [16] * 5 and count_shots() - before <= 5 * 30
+
+
+def test_each_position_is_proposed_for_by_itself(learned):
+    at, seeds, order = some(8), np.arange(8), np.array([6, 1, 3])
+    whole, part = learned(JUDGE, at, 50, seeds), learned(JUDGE, at[order], 50, seeds[order])
+    assert all(np.array_equal(one, every[order]) for one, every in zip(part, whole, strict=True))
+    other = learned(JUDGE, at, 50, seeds + 90)
+    assert all(not np.array_equal(other.strokes[k], whole.strokes[k]) for k in range(8))
