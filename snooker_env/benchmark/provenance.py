@@ -17,13 +17,23 @@ LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_c
 
 
 def commit() -> str | None:
-    """The commit of the checkout that the package is in, with "-dirty" if files are changed; None without one."""
+    """The commit of the checkout that the package is in, with "-dirty" if a tracked file is changed; None without one.
+    Pages and kept results do not count: a command that makes several of them changes them on its way."""
     here = Path(__file__).resolve().parents[2]
-    git = ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    made = (":!results/*/*", ":!docs/*")
     try:
         if not (here / ".git").exists():
             return None
-        return subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
+        head, changed = (
+            subprocess.run(
+                ["git", "-C", str(here), *words], capture_output=True, text=True, check=True
+            ).stdout.strip()
+            for words in (
+                ("rev-parse", "HEAD"),
+                ("status", "--porcelain", "--untracked-files=no", "--", ".", *made),
+            )
+        )
+        return f"{head}-dirty" if changed else head
     except (OSError, subprocess.CalledProcessError):
         return None
 
