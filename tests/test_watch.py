@@ -8,6 +8,7 @@ import pytest
 
 from snooker_env import player, watch
 from snooker_env.benchmark import HELD_OUT_SEED, play_visits
+from snooker_env.render.scene import LEAD
 
 SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 
@@ -49,7 +50,7 @@ def test_films_last_as_long_as_the_play(tmp_path):
     args = watch.parser().parse_args([*SHORT, "--out", str(file)])
     env, _, _ = watch.find_episode(args)
     watch.main([*SHORT, "--out", str(file), "--speed", "2"])
-    seconds = sum(p.shot.duration / 2 + 0.8 for p in env.history)
+    seconds = sum((LEAD + p.shot.duration) / 2 + 0.8 for p in env.history)
     with moviepy.VideoFileClip(str(file)) as clip:
         assert clip.size == [640, 360] and clip.duration == pytest.approx(seconds, abs=0.3 * len(env.history))
 

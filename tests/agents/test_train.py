@@ -120,7 +120,7 @@ def test_resume_refuses_other_settings(finished, refused):
 
 def test_existing_run_is_not_overwritten(finished, tmp_path, refused):
     before = (finished / "checkpoint.pkl").read_bytes()
-    assert "--resume continues it" in refused(train.main, "--out", finished)
+    assert "continue it with --resume" in refused(train.main, "--out", finished)
     assert (finished / "checkpoint.pkl").read_bytes() == before
     (file := tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(train.main, "--out", tmp_path)
@@ -179,9 +179,7 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
     found = results(tmp_path / "run")
     begun = {"model": start, "shots": 512, "imitated": 0, "start": None, "simulated_shots": 512}
     assert found["start"] == begun and found["simulated_shots"] == 1024
-    assert found["learned"].startswith(
-        f"With 512 shots of training on top of the 512 of {start}, ppo_target "
-    )
+    assert f"ppo_target, with 512 shots of training on top of the 512 of {start}, " in found["learned"]
     error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", "ppo_value", "--start", start)
     assert "must be a model of ppo_value" in error
 

@@ -50,7 +50,7 @@ def visit():
 def page_of(data):
     """The page of a replay that is given as data."""
     film = sn.replay(break_off(), title=data["title"])
-    film._data = data
+    film.to_dict = lambda: data
     return film.html()
 
 
