@@ -59,7 +59,8 @@ def results(task: Task, folder: Path, threads: int | None = None) -> Iterator[di
     for label, source in {"constant": found, **{name: MODULE + name for name in SILLY}}.items():
         if task.frame or label != "play_again":  # in a visit nobody has that choice
             agent, out = Agent.of(source, label=label), folder / f"{task.id}.{label}.json"
-            yield judge(task, agent, out=out, resume=True, threads=threads)
+            words = f"python -m snooker_env.benchmark degenerate {task.id} --out {folder}"
+            yield judge(task, agent, out=out, resume=True, threads=threads, command=words)
     for name in ("random", *ABOVE):
         file = folder / f"{task.id}.{name}.json"
         yield read_result(file) if file.exists() else judge(task, Agent.of(name), threads=threads)
