@@ -51,7 +51,9 @@ class Resamples:
 
     def sums(self, scores: Floats) -> Floats:
         """The sum of a matrix, float (runs, visits), in each sample: float64 (n,)."""
-        return ((self._visits @ scores.T) * self._runs).sum(axis=1)
+        # one product a run: BLAS divides a larger one among its threads, whose number would decide last bits
+        means = np.stack([self._visits @ one for one in scores], axis=1)
+        return (means * self._runs).sum(axis=1)
 
     def ratios(self, above: Floats, below: Floats) -> Floats:
         """The ratio of the sums of two matrices in each sample: float64 (n,), NaN where it divides by 0."""

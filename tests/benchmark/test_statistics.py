@@ -1,5 +1,9 @@
 """Are the figures of ``agents.evaluate`` as sure as they say?"""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -55,3 +59,22 @@ def test_paired_ratio():
     # the delta method for independent ones: the relative variances add
     spread = base.std() / base.mean() / np.sqrt(400)
     assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)
+
+
+def test_the_number_of_blas_threads_decides_no_bit():
+    code = """if True:
+        import numpy as np
+        from snooker_env.benchmark.statistics import Resamples
+        scores = np.random.default_rng(3).normal(size=(5, 500))
+        print(Resamples(5, 500).sums(scores).tobytes().hex())
+    """
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env=os.environ | {"OMP_NUM_THREADS": n},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for n in "12"
+    }
+    assert len(found) == 1
