@@ -119,3 +119,11 @@ def test_what_stops_it_from_outside_is_one_line(error, code, words, monkeypatch,
     monkeypatch.setattr(watch, "replay", stop)
     assert watch.main(SHORT) == code
     assert capsys.readouterr().err == f"snooker_env.watch: {words}\n"
+
+
+def test_a_folder_is_refused_before_anything_is_played(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(watch, "play_episode", None)
+    (folder := tmp_path / "visit.html").mkdir()
+    with pytest.raises(SystemExit):
+        watch.main([*SHORT, "--out", str(folder)])
+    assert "must be a file, not a folder" in capsys.readouterr().err

@@ -87,6 +87,13 @@ def test_a_post_without_a_body_has_no_fields(line):
     refused(line("/etc/passwd"), 404, "nothing")
 
 
+def test_a_second_slash_before_api_does_no_harm(line):
+    """Clients append "/api/state" to the address, which ends with "/"."""
+    assert line("/api/state")[1]["revision"] == line("api/state")[1]["revision"]
+    refused(line("/api/state", token="x"), 403, "token")
+    refused(line("/etc/passwd"), 404, "nothing")
+
+
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     start = tmp_path / "position.json"
     start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))

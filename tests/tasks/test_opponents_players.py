@@ -13,6 +13,7 @@ from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
+from snooker_env.players.opponents import opponent_of
 from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
@@ -229,6 +230,7 @@ ACTS = (Sees(), lambda observation, rng: MISS)
         ("serch", "opponent = 'serch': must be one of 'none', 'random', 'ghost_ball', .*MODULE:CLASS"),
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
         (OpponentPool, "opponent = <class '.*OpponentPool'>: must be an instance"),
+        ("none,random", "opponent = 'none,random': must be 'none' alone"),
         (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
         *(
             (one, "opponent = .*: must be one of .*; players.SeenPlayer wraps an object that acts")
@@ -357,3 +359,9 @@ def test_a_wrong_member_is_named():
     pool.add("foo")
     with pytest.raises(ValueError, match=name):
         [(tables.reset(seed=seed), tables.step(np.tile(DOWN, (2, 1)))) for seed in range(5)]
+
+
+def test_names_with_commas_are_a_pool_whatever_stands_first():
+    for names in ("planner@club,ghost_ball", "ghost_ball, planner@club"):
+        opponent = opponent_of(names, sn.Options(task="frame"))
+        assert sorted(opponent.pool.members) == ["ghost_ball", "planner@club"]
