@@ -1,6 +1,5 @@
 """How are results compared? One table for each task, ranked by the score less luck, at most 100 columns wide."""
 
-import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import Any
@@ -103,9 +102,7 @@ def _tables(results: Sequence[dict[str, Any]], markdown: bool) -> list[str]:
     for task in TASKS.values():
         head, rows = board(results, task, markdown=markdown)
         if rows:
-            table = text_table(head, rows, 3)
-            if markdown:  # without spaces around its bars: the page grows by a row for each result
-                table = [re.sub(r" ?\| ?", "|", line) for line in markdown_table(head, rows, 3)]
+            table = markdown_table(head, rows, 3) if markdown else text_table(head, rows, 3)
             judged = f"Judged by {task.measure}, {task.episodes:,} episodes for each training seed."
             made += [f"{'## ' * markdown}{task.id}: {task.title}", "", *wrap(judged, WIDTH), "", *table, ""]
     return made

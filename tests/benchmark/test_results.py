@@ -145,15 +145,15 @@ def test_the_page_ranks_agents_and_shows_anchors_without_a_rank(made):
         one["protocol"]["official"] = label != "last"
         rows.append(one)
     text = page(rows, ["first", "next"])
-    shown = [line.split("|")[1:6] for line in text.splitlines() if "](../results" in line]
+    shown = [line.split(" | ")[:5] for line in text.splitlines() if "](../results" in line]
     assert shown == [
-        ["1", "`first`", "planning", "3.0 [2.5, 3.5]", "30.0"],
-        ["", "`softest`", "anchor", "2.5 [2.0, 3.0]", "25.0"],
-        ["", "`random`", "anchor", "2.0 [1.5, 2.5]", "20.0"],
-        ["2", "`last` *", "model_free", "1.0 [0.5, 1.5]", "10.0"],
+        ["| 1", "`first`", "planning", "3.0 [2.5, 3.5]", "30.0"],
+        ["| ", "`softest`", "anchor", "2.5 [2.0, 3.0]", "25.0"],
+        ["| ", "`random`", "anchor", "2.0 [1.5, 2.5]", "20.0"],
+        ["| 2", "`last` *", "model_free", "1.0 [0.5, 1.5]", "10.0"],
     ]
     link = "[2026-11-30](../results/leaderboard/SnookerBreak-v0.first.json)"
-    assert f"|18.4 M|1|7|{link}|" in text
+    assert f"| 18.4 M | 1 | 7 | {link} |" in text
     assert "Still missing on at least one task: first, next." in text
     every = [one | {"task": name} for name in TASKS for one in rows[:1]]
     assert "missing" not in page(every, ["last"])
