@@ -13,26 +13,25 @@ Table = tuple[list[str], list[list[str]]]  # heading and rows
 
 LEGEND = (
     "Ranked by adjusted, the mean score less luck, with its 95 % interval. anchor: should win nothing, has no rank. training: simulated "
-    "shots of all training. seeds: training seeds. shots: simulated shots a decision (d: declared, not counted). *: not official."
+    "shots of training (5 ×: of each of five seeds). shots: simulated shots a decision (d: declared, not counted). *: not official."
 )
 READ = """\
 Every result on the five tasks of [the benchmark](benchmark.md). A row is a file that holds every
-stroke; `check` plays each episode again from its seed and computes all figures anew.
+stroke, so that `check` can play each episode again.
 
 ## How to read the tables
 
-* **adjusted** ranks the agents: the mean score [less luck](benchmark.md#less-luck). It has the same
-  expected value as the raw **score**, and varies less. Brackets hold the 95 % interval over
-  training seeds and episodes, or an exact one-sided bound where an event occurred in no episode or
-  in all. Two agents whose intervals overlap may be equally strong.
+* **adjusted** ranks the agents: the mean score [less luck](benchmark.md#less-luck). It has the
+  same expected value as the raw **score**, and varies less. Brackets hold the 95 % interval over
+  training seeds and episodes. Agents whose intervals overlap may be equally strong.
 * **class** says how an agent decides. `planning` simulates shots; `foresight` simulates none but
   computes in closed form what each stroke would do; `model_free` does neither.
 * An `anchor` is a policy that should win nothing, and has no rank. It shows what a task pays without
   skill: `random` strokes, one `constant` choice, the `softest` and the `hardest` stroke at the nearest
   ball on, a deliberate foul (`away`, `softest_away`), and in frames `play_again`, a `ghost_ball` that
   makes the opponent play again after every foul.
-* **training** counts the simulated shots of all training, **seeds** the training seeds. **shots**
-  counts the simulated shots of one decision; `d` marks a number that the author declared.
+* **training** counts the simulated shots of training (5 ×: of each of five seeds), **shots** those of
+  one decision; `d` marks a number that the author declared.
 * **result** links to the file, by its date. The file says which command, commit and machine made it.
 
 A file [cannot prove everything](benchmark.md#what-a-file-cannot-prove): to doubt a row, let its agent
@@ -66,7 +65,7 @@ def board(results: Iterable[dict[str, Any]], task: Task, *, markdown: bool = Fal
     mine.sort(key=lambda one: (-one["figures"]["adjusted"]["value"], one["agent"]["label"]))
     places = iter(range(1, len(mine) + 1))
     score = "score" if task.counts else "share %"
-    head = ["#", "agent", "class", "adjusted", score, "training", "seeds", "shots"]
+    head = ["#", "agent", "class", "adjusted", score, "training", "shots"]
     rows = [["" if is_anchor(one) else str(next(places)), *_row(one, task, markdown)] for one in mine]
     return [*head, "result"] if markdown else head, rows
 
@@ -75,13 +74,13 @@ def _row(result: dict[str, Any], task: Task, markdown: bool) -> list[str]:
     """The row of a result, without its rank."""
     agent, figures, scale = result["agent"], result["figures"], 1.0 if task.counts else 100.0
     shots, training, label = agent["simulated_shots"], agent["training_shots"], agent["label"]
+    seeds = f"{len(agent['sources'])} × " if len(agent["sources"]) > 1 else ""
     cells = [
         (f"`{label}`" if markdown else label) + ("" if result["protocol"]["official"] else " *"),
         "anchor" if is_anchor(result) else agent["class"],
         format_figure(figures["adjusted"], scale),
         f"{scale * figures['score']['value']:.1f}",
-        "?" if training is None else _in_short(training),
-        str(len(agent["sources"])),
+        seeds + ("?" if training is None else _in_short(training)),
         "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",
     ]
     link = f"[{result['date'][:10]}](../{FOLDER}/{task.id}.{label}.json)"
