@@ -78,10 +78,6 @@ ELSEWHERE = {
 }
 """Module or file -> the test that runs it."""
 
-NOT_RUN = {
-    "coverage": "it would run this suite within the suite; it is of the extra dev, which tests do not need",
-}
-
 DECLARED = {
     "train.py": ["agents/train.py", "agents/learning/settings.py"],
     "agents.evaluate": ["agents/cluster.py", "snooker_env/players/model_options.py"],
@@ -100,10 +96,9 @@ for _page in PAGES:
 
 
 def test_every_command_is_known():
-    known = [*SHORT, *ELSEWHERE, *NOT_RUN]
+    known = [*SHORT, *ELSEWHERE]
     assert len(GIVEN) > 20 and not set(GIVEN) - set(known)
     assert len(set(known)) == len(known)
-    assert set(NOT_RUN) <= set(GIVEN) and all(NOT_RUN.values())
 
 
 @pytest.mark.parametrize(
