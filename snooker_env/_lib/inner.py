@@ -168,7 +168,8 @@ class Inner(CPUDispatcher):
 
         def get_call_template(self, args: Any, kws: Any) -> Any:
             """What it gives for these types; a constant integer is an integer, or each would be compiled anew."""
-            args = [types.unliteral(a) if isinstance(a, types.IntegerLiteral) else a for a in args]
+            plain = types.IntegerLiteral, types.BaseTuple
+            args = [types.unliteral(a) if isinstance(a, plain) else a for a in args]
             return super().get_call_template(args, kws)
 
         def compile(self, sig: Any) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .._lib.cache import CACHE_FOLDER
 from .._lib.command import exit_code
-from .._lib.jit import ENTRIES
+from .._lib.jit import ENTRIES, collecting_no_garbage
 from .._lib.notices import warming_up
 from ..progress import ticking
 from ..simulation import simulate
@@ -42,7 +42,7 @@ def warmup() -> None:
     >>> sn.warmup()  # doctest: +SKIP
     """
     kernels = [kernel for kernel in ENTRIES if kernel.__module__.startswith("snooker_env.")]
-    with ticking("compiling", "kernels") as tick, warming_up(kernels, tick):
+    with collecting_no_garbage(), ticking("compiling", "kernels") as tick, warming_up(kernels, tick):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
         strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
