@@ -52,7 +52,7 @@ def is_kept(figure):
     if figure[0] in LINES:
         return True
     value, *ends, error = figure.groups()
-    if len(re.findall(r"\d", value.lstrip("0.-+−"))) < 3 and not any(ends):
+    if len(re.findall(r"\d", value.lstrip("0.-+−"))) < 3 and not (any(ends) and "." in value):
         return False  # so short a number is found somewhere by chance
 
     def near(printed, numbers, *times):
@@ -112,7 +112,7 @@ KEPT = "27.0 [25.7, 28.2]"
         ("# A\n\n61.3 [60.2, 64.1], at commit 934232a0\n", []),
         ("# A\n\n```bash\n# no heading\npython train.py\n```\n\n61.3 [60.2, 64.1]\n", []),
         (f"# A\n\n{KEPT}\n", []),
-        ("# A\n\n61 ± 1 points\n", ["A: 61 ± 1"]),
+        ("# A\n\n61 ± 1 points, 12 [10, 14]\n", ["A: 61 ± 1", "A: 12 [10, 14]"]),
         ("# A\n\n27.0 [25.7, 28.3]\n", ["A: 27.0 [25.7, 28.3]"]),
         ("# A\n\nshape (3, 4), `x[0, 1]`, Box(-1, 1), [0, 1]\n", []),
     ],
