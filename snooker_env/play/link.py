@@ -1,9 +1,6 @@
-"""How is a whole game passed on? As text: its first table, what was asked for from there, and where balls came to rest.
-
-Behind the first table stands one large number, whose digits have the base of what the rules allow there, so nothing else can be
-written. Played again on the ``Grid``, strokes meet the same execution errors. Of a ball that a stroke moved there is the place
-modulo ``NEAR`` steps: a machine whose last bits fall otherwise takes that place, within 0.25 mm of its own. A check after each
-stroke, of all places and scores, shows larger differences."""
+"""How is a whole game passed on? As text: its first table, and one large number, whose digits have the base of what the rules
+allow there: what was asked for, and of each ball that a stroke moved the place modulo ``NEAR`` steps. A machine whose last bits
+fall otherwise takes that place, within 0.25 mm of its own; a check of all places and scores shows larger differences."""
 
 import json
 import re
@@ -110,8 +107,8 @@ def write_link(session: Session) -> str:
 
 
 def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
-    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it does not come out so here: then
-    nothing has changed. ``agreed``: nobody may have changed errors or cue on the way, or practised."""
+    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here.
+    ``agreed``: nobody may have changed errors or cue on the way, or practised."""
     first, digits = _read_link(session, link)
     with session.as_a_whole():
         session.load(first)
@@ -223,9 +220,8 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
     whole, rest = raw[:-TAIL], raw[HEAD + TABLE : -TAIL]
     same = urlsafe_b64encode(raw).decode().rstrip("=") == link
     if len(whole) < HEAD + TABLE or not same or zlib.crc32(whole) != int.from_bytes(raw[-TAIL:], "big"):
-        raise refuse_what(
-            "link", f"{len(link)} characters", "must be whole: this one is damaged, copy it again"
-        )
+        allowed = "must be whole: this one is damaged, copy it again"
+        raise refuse_what("link", f"{len(link)} characters", allowed)
     key = int.from_bytes(whole[7:HEAD], "big")
     own, length = _head_of(session, key), int.from_bytes(whole[HEAD : HEAD + TABLE], "big")
     if whole[:4] != own[:4]:

@@ -1,7 +1,5 @@
-"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads.
-
-The file is read before each use and written whole, so two servers may share it. One that is not sound is an error, and is
-never written over."""
+"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads. It is read before each
+use and written whole, so two servers may share it. One that is not sound is an error, and never written over."""
 
 import json
 from collections.abc import Callable

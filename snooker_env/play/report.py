@@ -22,12 +22,23 @@ from .session import Act
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
+IN_SESSION = (
+    "begun",
+    "practice",
+    "game",
+    "best_of",
+    "frames",
+    "match_over",
+    "cue",
+    "breaks",
+    "hints",
+    "undone",
+)
 
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    with service.reading() as session:
-        rules = session.options_with("none").rules
+    rules = service.session.options_with("none").rules
     assert isinstance(rules.actions, Actions)
     limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
     pockets = zip(POCKETS, POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
@@ -100,25 +111,24 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
 
 def report(service: Service) -> dict[str, Any]:
     session, seats, labels = service.session, service.seats, service.labels
-    frame, act = session.frame, session.acts[session.at - 1]
+    frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
     before = session.acts[session.at - 2] if session.at > 1 else None
     state = table_after(act, labels, service.win_chances([act])[0], before)
-    host = service.me == PERSON
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = ["begun", "practice", "game", "best_of", "frames", "match_over", "cue"]
-    of_session += ["breaks", "hints", "undone"]
-    state |= turn | {name: getattr(session, name) for name in of_session}
-    state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
+    state |= turn | {name: getattr(session, name) for name in IN_SESSION}
     by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
     visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
     state |= {
+        "revision": service.revision,
+        "thinking": service.thinking,
+        "trouble": service.trouble,
         "players": seats.seen_by(service.me),
         "labels": list(labels),
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
-        "choice_wins": service.choice_chances(session),
+        "choice_wins": service.choice_chances(),
         "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
         "undo": host and session.at > 1 and not by_link,
@@ -138,9 +148,7 @@ def report(service: Service) -> dict[str, Any]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
         state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
-    state["luck"] = _say_luck(service) if state["phase"] == "over" else ""
     said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
-    said += [state["luck"]] * bool(state["luck"])
     return state | {"text": say_table(state, lines, said)}
 
 
@@ -152,15 +160,3 @@ def _say_chance(state: dict[str, Any]) -> list[str]:
     share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
     one, other = state["labels"]
     return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]
-
-
-def _say_luck(service: Service) -> str:
-    """How lucky both were in the frame, in their chances to win; "" where nobody errs."""
-    lucks, acts = [0.0, 0.0], service.session.acts
-    for k, luck in zip(service.session.strokes, service.session.luck, strict=True):
-        lucks[acts[k].player or 0] += luck
-    shares = [round(100 * luck) for luck in lucks]
-    one, other = (
-        f"{name} {share:{'+' * bool(share)}d} %" for name, share in zip(service.labels, shares, strict=True)
-    )
-    return f"Luck: {one}, {other}." if any(lucks) else ""

@@ -1,6 +1,5 @@
-"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
-
-A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field."""
+"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route. A handler takes the fields of
+a request and returns JSON types; a ValueError names an invalid field."""
 
 import re
 from collections.abc import Callable
@@ -90,29 +89,16 @@ def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
-    check, scores = truth("check", fields.get("check", False)), fields.get("scores", [0, 0])
+    check = truth("check", fields.pop("check", False))
     try:
-        if not isinstance(scores, list) or len(scores) != 2:
-            raise refuse("scores", scores, "must be two integers")
-        one, other = (integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
-        striker = integer("striker", fields.get("striker", 0), 0, 1)
-        free = truth("free_ball", fields.get("free_ball", False))
-        position = position_of(fields.get("position"))
+        position = Position.from_dict(fields.pop("position", None))  # type: ignore[arg-type]
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=(one, other), striker=striker, free_ball=free)
+            session.set_up(position, **fields)
     except ValueError as error:
         if not check:
             raise
         return {"sound": False, "error": parts_of(error)}
     return {"sound": True, "error": None} if check else None
-
-
-def position_of(fields: Any) -> Position:
-    """The ``Position`` of JSON types; ValueError names the ball or the field that is invalid."""
-    position = Position.from_dict(fields)
-    if position.over:
-        raise refuse("over", True, "must be false: there is no stroke to play")
-    return position
 
 
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
@@ -146,11 +132,11 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
-    noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
-    practice = truth("practice", fields["practice"]) if "practice" in fields else None
-    cue = choice("cue", fields["cue"], CUES) if "cue" in fields else None
     with service.acting(any_turn=True, anew="players" in fields) as session:
-        if "players" in fields:
+        noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
+        session.practice = truth("practice", fields.get("practice", session.practice))
+        session.cue = cast(CueKind, choice("cue", fields.get("cue", session.cue), CUES))
+        if "players" in fields:  # last, since seats are not given back after an error
             seats, own = service.seats, service.seats.errors_of_host(session)
             agents = [seats.is_agent(k) for k in (0, 1)]
             seats.sit(fields["players"])
@@ -158,10 +144,7 @@ def _players(service: Service, fields: dict[str, Any]) -> None:
             for k in (0, 1):  # a person does not take over the errors of an agent
                 mine = own if agents[k] and not seats.is_agent(k) else session.noise[k]
                 session.noise[k] = seats.usual_noise(k, mine)
-        if noise is not None:
-            session.noise[:] = noise
-        session.practice = session.practice if practice is None else practice
-        session.cue = cast(CueKind, cue) or session.cue
+        session.noise[:] = noise or session.noise
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -202,26 +185,23 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
         errors = _errors(fields, 200, seats.level(session))
         session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        answer: dict[str, Any] = {"choice": None, "choices": []}
+        decided = None
         if session.frame.phase == "choice":
-            answer["choice"] = CHOICES[int(seats.decide(agent, session).decision[0])]
-            wins, choices = service.choice_chances(session, errors["noise"]), session.frame.choices
-            answer["choices"] = [{"choice": x, "win": win} for x, win in zip(choices, wins, strict=True)]
+            decided = CHOICES[int(seats.decide(agent, session).decision[0])]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
-        answer |= {"agent": agent, "order": advice.order, "noise": advice.noise}
-        answer["suggestions"] = [_draw_suggestion(session, one) for one in advice]
+        told = {"agent": agent, "order": advice.order, "noise": advice.noise, "choice": decided}
+        told["suggestions"] = [_draw_suggestion(session, one) for one in advice]
     with service.reading() as now:
         seat = session.frame.striker
         shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
         if shown and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
-    return answer
+    return told
 
 
 def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
-    """A suggestion in words, data and paths."""
     names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
     names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
     return one.to_dict() | names | _draw(session, one.stroke)
@@ -248,7 +228,7 @@ def _draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
 
 
 def _paths(shot: Shot) -> dict[str, Any]:
-    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
+    """Paths of a shot's balls [m]; the ball struck first, the pots and the duration."""
     hits, lines = _hits(shot), trace_paths(shot, range(len(shot.positions)), step=0.04)
     return {
         "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},

@@ -1,7 +1,5 @@
-"""How do persons, programs and agents share one game? Behind one lock; agents think on copies of it.
-
-A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. An agent's stroke is dropped if the game has changed in the meantime."""
+"""How do persons, programs and agents share one game? Behind one lock, with a revision that grows with every change. Agents think
+on copies of it; their strokes are dropped if the game has changed in the meantime."""
 
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,7 +32,9 @@ from .session import DECLINED, Act, Session
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
-_ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
+ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
+"""Who makes the request that this thread answers: the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER``."""
+LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
@@ -65,9 +65,8 @@ class Seats:
         return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
-        """With whose errors the chance to win and advice are counted, for both players alike: the largest of the persons'
-        who play, else of the agents'. A person without errors counts as an amateur, who errs by hand, and nobody as
-        better than a professional, for whom the tactician has learned."""
+        """The errors of both in advice and the chance to win: the largest of the persons' who play, else of the agents'. A
+        person without errors counts as an amateur, and nobody as better than a professional: so learned the tactician."""
         seats = range(1 if session.practice else 2)
         people = [seat for seat in seats if not self.is_agent(seat)]
         errors = [LEVELS[session.noise[seat]] for seat in people or seats]
@@ -165,9 +164,6 @@ class Reviewing:
         self.running = False
 
 
-LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
-
-
 class BusyError(RuntimeError):
     """Too many questions are being computed; the client should try again later."""
 
@@ -208,17 +204,7 @@ class Service:
 
     @property
     def me(self) -> str:
-        """Who asks: see ``asked_by``."""
-        return _ASKING.get()
-
-    @contextmanager
-    def asked_by(self, me: str) -> Iterator["Service"]:
-        """In this context the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER`` asks."""
-        before = _ASKING.set(me)
-        try:
-            yield self
-        finally:
-            _ASKING.reset(before)
+        return ASKING.get()
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -260,8 +246,8 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
-        also in an agent's turn; ``anew``: another game begins."""
+        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: also in an agent's turn; ``anew``:
+        another game begins."""
         with self.reading(revision) as session:
             if not (any_turn or anew):
                 self.check_turn()
@@ -286,24 +272,25 @@ class Service:
         finally:
             self._asking.release()
 
-    def judge(self, noise: NoiseName | None = None) -> ChanceJudge | None:
-        """Estimates chances to win with these errors, by default those of ``Seats.level``; None in practice."""
+    def judge(self) -> ChanceJudge | None:
+        """Estimates chances to win with the errors of ``Seats.level``; None in practice."""
         if self.session.practice:
             return None
-        options = self.session.options_with(noise or self.seats.level(self.session))
+        options = self.session.options_with(self.seats.level(self.session))
         if self._judge[0] is not options:
             self._judge = options, player("tactician").at(options)
         return self._judge[1]
 
-    def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
-        """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
-        if (judge := self.judge(noise)) is None or not acts:
+    def win_chances(self, acts: Sequence[Act]) -> list[float] | list[None]:
+        """How likely seat 0 was to win after each of some acts; None in practice."""
+        if (judge := self.judge()) is None or not acts:
             return [None] * len(acts)
         return win_chances(judge, [act.standing for act in acts])
 
-    def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
-        """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
-        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
+    def choice_chances(self) -> list[float | None]:
+        """How likely the striker wins after each choice that it has after a foul; None in practice."""
+        session = self.session
+        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices])
         return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
 
     def own_file(self) -> Person:
@@ -419,8 +406,6 @@ class Service:
         (stroke,) = cue_strokes(decided, session.position)
         if session.frame.in_hand and np.isfinite(decided.place[0]).all():
             session.place(*decided.place[0].tolist())
-        nominated = int(decided.nominate[0])
-        sensible = nominated in nominations_of(session.frame) or (
-            nominated == DECLINED and session.frame.free_ball
-        )
+        nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
+        sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
         session.play(stroke, nominated=nominated if sensible else AUTO)

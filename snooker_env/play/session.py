@@ -1,11 +1,10 @@
-"""What is the game on the page? One frame in memory, with a list of acts to undo and redo.
-
-Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke
-that is undone and played again meets the same execution errors."""
+"""What is the game on the page? A list of acts, in which undo and redo move. The state after each holds the random stream, so a
+stroke that is played again meets the same execution errors."""
 
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -64,29 +63,24 @@ class Act:
 class Session:
     """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
 
-    noise: list[NoiseName]  # execution errors of each seat
-    practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
-    best_of: int  # the length of the match in frames; 1: a single frame
-    won: list[int]  # frames that each seat has won in the match before this one
     hints: list[int]  # how often each seat asked for advice in this frame
     undone: int  # how often something was taken back in it
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
-    begun: int  # games begun or loaded so far
-    grid: Grid  # on which all is played
-    options: Options  # of this frame, without execution errors
     tables: Frames  # of the one table
 
-    def __init__(
-        self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
-    ):
-        box = Options(task="frame", max_strokes=None, **FRAMES)
-        if flight:
-            box = box.but(elevation=70, physics={"flight": True})
-        self.options = box.but(miss="clear_path", layout=layout, cue=cue)
-        self.noise, self.practice = ["none", "none"], False
-        self.best_of, self.won, self.begun = 1, [0, 0], 0
-        self.grid = Grid()
+    def __init__(self, *, layout: str = "break_off", seed: int = 0, flight: bool = False):
+        more: dict[str, Any] = {"elevation": 70, "physics": {"flight": True}} if flight else {}
+        box = Options(task="frame", max_strokes=None, miss="clear_path", cue="real", **FRAMES)
+        self.options: Options = box.but(**more)  # of this frame, without execution errors
+        self.noise: list[NoiseName] = ["none", "none"]  # of each seat
+        self.practice: bool = (
+            False  # alone: player 0 has every turn, and after a foul the balls stay as they lie
+        )
+        self.best_of: int = 1  # the length of the match in frames
+        self.won: list[int] = [0, 0]  # frames that each seat has won in the match before this one
+        self.begun: int = 0  # games begun or loaded so far
+        self.grid: Grid = Grid()  # on which all is played
         self._generator = np.random.default_rng(0)
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
@@ -111,7 +105,6 @@ class Session:
 
     @property
     def game(self) -> RulesName:
-        """The rules that are played: "snooker", "six_red" or "shoot_out"."""
         return self.options.game
 
     @property
@@ -121,7 +114,6 @@ class Session:
 
     @property
     def match_over(self) -> bool:
-        """Whether one seat has won the match."""
         return max(self.frames) > self.best_of // 2
 
     @property
@@ -181,8 +173,7 @@ class Session:
 
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
-        other = object.__new__(Session)
-        other.__dict__.update(self.__dict__)
+        other = copy(self)
         other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
         other.tables = Frames(self.options.rules, 1)
         other._set(self.state)
@@ -321,14 +312,17 @@ class Session:
         px, py = places[CUE].tolist()
         return px, py
 
-    def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool) -> None:
+    def set_up(
+        self, position: Position, *, scores: Any = (0, 0), striker: int = 0, free_ball: bool = False
+    ) -> None:
         """Put the balls as in a position. ValueError names the ball or the field."""
+        if position.over:
+            raise refuse("over", True, "must be false: there is no stroke to play")
         positions, on_table, _ = position.arrays()
-        mask = mask_of_present(on_table) & ~1
-        for i in np.flatnonzero(~on_table):
-            positions[i] = 0.0
+        scores = tuple(scores) if isinstance(scores, list) else scores
         game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
-        game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
+        game |= {"break_points": position.points, "in_hand": position.in_hand}
+        game |= {"on_table": mask_of_present(on_table) & ~1}
         rules: Any = {"miss": self.options.miss, "rules": self.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
@@ -357,8 +351,7 @@ class Session:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "cue", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            allowed = 'must be a saved game, with "format": "snooker-game"'
-            raise refuse_what("saved", "something else", allowed)
+            raise refuse_what("saved", "something else", 'must be a saved game, "format": "snooker-game"')
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             what = f"version {saved.get('version')!r} with {sorted(saved)}"
             raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")

@@ -6,11 +6,11 @@
  */
 
 import { decode, showChance, TableView } from "./table.js";
-import { Aim } from "./play_aim.js";
+import { Aim, firstAim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
+import { Clock } from "./play_clock.js";
 import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
-import { firstAim } from "./play_first.js";
 import { Friend } from "./play_friend.js";
 import { breakWords, ending, helped, opponents } from "./play_level.js";
 import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
@@ -20,13 +20,12 @@ import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
 import { Sound } from "./play_sound.js";
-import { Stats } from "./play_stats.js";
 import { Tour } from "./play_tour.js";
 
 const OWN = "own", FINE = 30, POWER = 2.5;
 const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, zoom, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
-const SLOW = 0.2, ZOOM = 2, CALLED = 1600, AGENTS_LEAD = 1;
+/** Slow motion, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
+const SLOW = 0.2, CALLED = 1600, AGENTS_LEAD = 1;
 /** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
 const STEPS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ..."wsadeq"], HOLD = 300, RATE = 0.03;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels], and what is about lies so many of its breadths off its corner. */
@@ -55,7 +54,6 @@ class Page {
     this.moving = null;
     this.held = false;
     this.kind = "play";
-    this.zoomed = false;
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene, true);
     this.loupe = new TableView(by("loupe"), this.scene, true);
@@ -66,7 +64,7 @@ class Page {
     this.setup = new SetUp(this);
     this.review = new Review(this);
     this.sound = new Sound();
-    this.stats = new Stats(this);
+    this.clock = new Clock(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
     this.friend = new Friend(this);
@@ -86,8 +84,6 @@ class Page {
     by("skip").onclick = () => this.skip();
     by("turn").onclick = () => this.hurry();
     by("fold").onclick = () => this.fold();
-    by("zoom").onclick = () => this.zoom();
-    by("full").onclick = () => this.full();
     document.addEventListener("pointerdown", () => this.sound.wake());
     by("go").onclick = () => this.goOn();
     by("slow").onclick = () => this.again(SLOW);
@@ -118,7 +114,7 @@ class Page {
     by("practice").onchange = () => this.seats();
     fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
     by("cue").onchange = () => this.seats();
-    by("help-open").onclick = () => this.help();
+    by("help-open").onclick = () => by("help").showModal();
     for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
       if (one.open) one.scrollIntoView({ block: "nearest" });
     };
@@ -137,30 +133,10 @@ class Page {
   /** Let a phone show the table; `otherwise`: whether another screen folds. */
   compact(otherwise) { if (PHONE.matches || otherwise !== undefined) this.fold(PHONE.matches); }
 
-  full() {
-    const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.();
-    done?.catch(error => this.trouble(error));
-  }
-
-  zoom() {
-    this.zoomed = !this.zoomed;
-    by("zoom").setAttribute("aria-pressed", String(this.zoomed));
-    this.fit();
-  }
-
-  /** Fit the table to the screen, or zoom to the middle of the stroke. */
+  /** Fit the table to the screen. */
   fit() {
-    const { view } = this;
-    view.resize();
+    this.view.resize();
     this.loupe.resize();
-    if (this.zoomed && this.aiming) {
-      const { met } = this.aim.overlay(), [[x0, x1], [y0, y1]] = this.scene.extent, scale = view.scale * ZOOM;
-      const [wide, high] = [by("table").width / scale / 2, by("table").height / scale / 2], [half, long] = view.upright ? [wide, high] : [high, wide];
-      const middle = (value, low, high_, room) => (room > (high_ - low) / 2 ? (low + high_) / 2 : Math.min(high_ - room + 0.1, Math.max(low + room - 0.1, value)));
-      view.still = null;
-      view.look(middle((this.balls.x[0] + met.x) / 2, x0, x1, half), middle((this.balls.y[0] + met.y) / 2, y0, y1, long), scale);
-      this.near = true;
-    } else if (this.near) { view.still = null; this.near = false; }
     this.redraw();
   }
 
@@ -201,10 +177,9 @@ class Page {
     this.state = state;
     this.strength = me === "person" && who in this.menu && (errors ?? state.noise[1]) === state.noise[1] ? who : OWN;
     if (first) { this.put(state); this.drills.resume(); }
-    if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
+    if (fresh || state.strokes < this.played) { this.still(); this.clock.key = null; }
     if (fresh) this.review.end();
     if (fresh && !first) {
-      this.stats.times.clear();
       this.played = state.by_link?.visit ?? 0;
       this.replay = state.strokes > 0;
       if (!this.drills.now) this.aim.set({ speed: POWER });
@@ -288,11 +263,6 @@ class Page {
     await this.try(() => ask(name, body));
   }
 
-  help() {
-    if (by("help").open) by("help").close();
-    else by("help").showModal();
-  }
-
   /** Show this table: the state, or one of a stroke. */
   put(table) {
     this.table = table;
@@ -321,9 +291,8 @@ class Page {
       this.settled = state.revision;
       this.friend.settled().catch(error => this.trouble(error));
       this.room.changed();
-      if (this.zoomed) this.fit();
     }
-    this.stats.turn(this.aiming);
+    this.clock.turn(this.aiming);
   }
 
   /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
@@ -358,9 +327,8 @@ class Page {
     const stroke = decode({ format: "snooker-replay", version: 2, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
       this.moving = { stroke, rate, at: this.state.players[stroke.player] === "person" || rate < 1 ? -0.4 : -AGENTS_LEAD, now: null, done };
-      if (this.near) this.fit();
       if (this.state.players[stroke.player] === "person") this.compact();
-      this.stats.turn(false);
+      this.clock.turn(false);
       this.room.changed();
       this.put(data.tables[0]);
     });
@@ -382,14 +350,9 @@ class Page {
 
   async again(rate = 1) {
     if (!this.state.strokes || this.behind || this.setup.open) return;
-    await this.film(async () => (await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate);
-  }
-
-  async film(stroke, rate = 1) {
-    if (this.behind) return;
     this.busy = true;
     this.compact();
-    try { await this.move(typeof stroke === "function" ? await stroke() : stroke, rate); } catch (error) { this.moving = null; this.trouble(error); }
+    try { await this.move((await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate); } catch (error) { this.moving = null; this.trouble(error); }
     this.busy = false;
     this.catchUp();
   }
@@ -411,7 +374,6 @@ class Page {
   play() {
     if (this.aiming) this.once(async () => {
       by("play").disabled = true;
-      this.stats.played();
       const { speed, side, top, aim, elevation } = this.aim.wish;
       await this.placing.quiet();  // the last place of a drag makes a new revision
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
@@ -484,8 +446,7 @@ class Page {
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : this.review.open ? { Escape: () => this.review.end(), ArrowUp: () => this.review.step(-1), ArrowDown: () => this.review.step(1), Enter: () => this.review.again() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
-      z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
-      "?": () => this.help(),
+      m: () => this.sound.flip(), "?": () => by("help").showModal(),
       ...(this.ended || this.drills.done) && { Enter: () => this.goOn() },
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn), ArrowRight: () => aim.turn(-turn), ArrowUp: () => aim.faster(push), ArrowDown: () => aim.faster(-push),
@@ -571,8 +532,7 @@ class Page {
     by("redo").disabled = !state.redo || this.drills.now;
     by("set").disabled = this.drills.now || state.by_link;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
-    by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = !state.strokes;
-    by("stats-open").disabled = !state.strokes || this.drills.now;
+    by("replay").disabled = !state.strokes;
     by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
