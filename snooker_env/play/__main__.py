@@ -19,12 +19,6 @@ if TYPE_CHECKING:
 PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
 
 
-def _usual_file() -> Path:
-    """A person's file, unless another is named: in the user's folder for data."""
-    base = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
-    return Path(base).expanduser() / "snooker_env" / "person.json"
-
-
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     about = """Play snooker in the browser, against an agent or yourself, from any position, with an advisor. Programs can
         play too (docs: The protocol). The server listens on 127.0.0.1 only, unless --host is given; it prints the address
@@ -40,8 +34,10 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
         one is your opponent (default: Walter) and, if it knows frames, your adviser. May be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
+    folder = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
+    file = Path(folder).expanduser() / "snooker_env" / "person.json"
     person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
-    add("--person", type=Path, default=_usual_file(), metavar="FILE", help=person)
+    add("--person", type=Path, default=file, metavar="FILE", help=person)
     add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
     add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")

@@ -12,7 +12,7 @@ from ..planning.stroke_columns import FARTHEST
 from ..players.table_report import report_game, report_turn, say_score, say_table
 from ..render.scene import scene_data
 from ..replays.encode import encode_stroke
-from ..replays.referee_words import ERRORS, errors_words, sentence
+from ..replays.referee_words import ERRORS, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .levels import LEVELS
@@ -22,18 +22,7 @@ from .session import Act
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
 STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
-IN_SESSION = (
-    "begun",
-    "practice",
-    "game",
-    "best_of",
-    "frames",
-    "match_over",
-    "cue",
-    "breaks",
-    "hints",
-    "undone",
-)
+IN_SESSION = ("begun", "practice", "game", "cue", "breaks", "hints", "undone")
 
 
 def scene(service: Service) -> dict[str, Any]:
@@ -148,15 +137,5 @@ def report(service: Service) -> dict[str, Any]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
         state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
-    said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
+    said = [state["last"], state["words"], say_score(state, labels)]
     return state | {"text": say_table(state, lines, said)}
-
-
-def _say_chance(state: dict[str, Any]) -> list[str]:
-    """How likely both are to win; nothing where nobody says it, or the frame is over."""
-    if (chance := state["win_chance"]) is None or state["phase"] == "over":
-        return []
-    sure = chance in (0.0, 1.0)  # by the rules; as the page shows it, rounding makes nothing certain
-    share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
-    one, other = state["labels"]
-    return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]

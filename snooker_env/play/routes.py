@@ -111,19 +111,12 @@ def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bo
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    by_link, follows = (truth(name, fields.pop(name, False)) for name in ("by_link", "next"))
+    by_link = truth("by_link", fields.pop("by_link", False))
     if not isinstance(fields.get("layout", ""), str):
         raise refuse("layout", fields["layout"], "must be the name of a layout")
-    if by_link and (follows or fields.get("best_of", 1) != 1):
-        raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
         noise = list(session.noise)
-        if follows:
-            for name in set(fields) - {"seed"}:
-                raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
-            session.next_frame(**fields)
-        else:
-            session.new(**fields)
+        session.new(**fields)
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
             service.seats.share(0, noise)
@@ -361,7 +354,7 @@ POST: dict[str, Route] = {
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_move, move=Session.undo)),
     "redo": Route(partial(_move, move=Session.redo)),
-    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next", "by_link")),
+    "new": Route(_new, ("layout", "seed", "breaker", "game", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),

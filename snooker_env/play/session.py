@@ -36,7 +36,6 @@ from ..tasks.threads import Threads
 from .grid import Grid, numbers_of, stroke_of
 
 DECLINED = 0  # the nomination of a player who does not use a free ball
-MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
 
 
@@ -77,13 +76,10 @@ class Session:
         self.practice: bool = (
             False  # alone: player 0 has every turn, and after a foul the balls stay as they lie
         )
-        self.best_of: int = 1  # the length of the match in frames
-        self.won: list[int] = [0, 0]  # frames that each seat has won in the match before this one
         self.begun: int = 0  # games begun or loaded so far
         self.grid: Grid = Grid()  # on which all is played
         self._generator = np.random.default_rng(0)
         self._buffers = ShotBuffers(1, path=True)
-        self._played: Played | None = None
         self._with: dict[str, Options] = {}
         self.new(layout=layout, seed=seed)
 
@@ -106,15 +102,6 @@ class Session:
     @property
     def game(self) -> RulesName:
         return self.options.game
-
-    @property
-    def frames(self) -> list[int]:
-        """Frames that each seat has won in the match, with this one if it is over."""
-        return [won + (self.frame.winner == seat) for seat, won in enumerate(self.won)]
-
-    @property
-    def match_over(self) -> bool:
-        return max(self.frames) > self.best_of // 2
 
     @property
     def breaks(self) -> list[list[int]]:
@@ -163,7 +150,7 @@ class Session:
     def as_a_whole(self) -> Iterator["Session"]:
         """What is done in this context is done as a whole: after an exception the session is as it was before."""
         state, kept = self.state, self.__dict__.copy()
-        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won", "hints")}
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "hints")}
         try:
             yield self
         except BaseException:
@@ -174,34 +161,23 @@ class Session:
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
         other = copy(self)
-        other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
+        other._buffers, other.noise = ShotBuffers(1, path=True), list(self.noise)
         other.tables = Frames(self.options.rules, 1)
         other._set(self.state)
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
     def new(
-        self,
-        *,
-        layout: str | None = None,
-        seed: int = 0,
-        breaker: int = 0,
-        game: str | None = None,
-        best_of: int = 1,
+        self, *, layout: str | None = None, seed: int = 0, breaker: int = 0, game: str | None = None
     ) -> None:
-        """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
-        if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
-            raise refuse("best_of", best_of, "must be odd, so that one player wins")
-        self._deal(self._but(layout, game), seed, breaker)
-        self.best_of, self.won = best_of, [0, 0]
-
-    def next_frame(self, *, seed: int = 0) -> None:
-        """Begin the next frame of the match, which the other player breaks off; after its end a new match."""
-        if self.frame.phase != "over":
-            raise refuse("next", True, "must be left out: the frame is not over")
-        won = [0, 0] if self.match_over else self.frames
-        self._deal(self.options, seed, 1 - self.frame.breaker)
-        self.won = won
+        """Begin a frame; ``layout`` and ``game`` stay unless they are given."""
+        integer("seed", seed, 0, 2**63 - 1)
+        integer("breaker", breaker, 0, 1)
+        self._play_by(self._but(layout, game))
+        self.tables.seed(0, np.random.default_rng(seed))
+        self.tables.deal(np.zeros(1, np.int64), drawn=False)
+        self._write(replace(self.frame, striker=breaker, breaker=breaker))
+        self._begin("new")
 
     def _but(self, layout: str | None, game: str | None) -> Options:
         """The options with another layout and game; the Shoot Out has no miss rule."""
@@ -212,15 +188,6 @@ class Session:
     def _play_by(self, options: Options) -> None:
         self.options, self._with = options, {}
         self.tables = Frames(options.rules, 1)
-
-    def _deal(self, options: Options, seed: int, breaker: int) -> None:
-        integer("seed", seed, 0, 2**63 - 1)
-        integer("breaker", breaker, 0, 1)
-        self._play_by(options)
-        self.tables.seed(0, np.random.default_rng(seed))
-        self.tables.deal(np.zeros(1, np.int64), drawn=False)
-        self._write(replace(self.frame, striker=breaker, breaker=breaker))
-        self._begin("new")
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
@@ -239,15 +206,15 @@ class Session:
         striker = frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self.options, self.position)
-        self._played, room = None, self.room(stroke)
+        kept, room = list[Played](), self.room(stroke)
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
         tables.nominated[0] = nominated
-        crew, luck = Crew(self._buffers, self._watch), self._luck(actions, striker)
+        crew = Crew(self._buffers, lambda k, buffers, j, agents: kept.append(tables.record(k, buffers, j)))
+        luck = self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
-        assert self._played is not None
-        played = replace(self._played, before=frame, meant=meant)
+        played = replace(kept[0], before=frame, meant=meant)
         if self.practice:
             self._hand_back()
         self.grid.settle(tables, before["positions"])
@@ -267,9 +234,6 @@ class Session:
 
         first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win(self.options_with(errors)))
         return float(first[0] if striker == 0 else -first[0])
-
-    def _watch(self, k, buffers, j, agents):
-        self._played = self.tables.record(k, buffers, j)
 
     def _hand_back(self):
         frame = self.frame
@@ -365,7 +329,7 @@ class Session:
             self._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
             self._set(state)
             self.practice, self.cue = practice, cast(CueKind, cue)
-            self.noise, self.best_of, self.won = noise, 1, [0, 0]
+            self.noise = noise
             self._begin("load")
 
     def _begin(self, what: str) -> None:

@@ -269,8 +269,6 @@ def test_by_link_two_persons_play_each_its_own_seat(game):
             changed.choose("play")
     with pytest.raises(ValueError, match=r"^link, stroke \d+: noise = .*must stay as at the beginning"):
         game("load", link=write_link(changed), seat=None)
-    with pytest.raises(ValueError, match=r"^by_link = True: must be left out in a match"):
-        game("new", by_link=True, best_of=3)
     assert json.dumps(game("new")["by_link"]) == "null"
 
 

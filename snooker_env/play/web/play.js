@@ -23,7 +23,6 @@ import { Sound } from "./play_sound.js";
 import { Tour } from "./play_tour.js";
 
 const OWN = "own", FINE = 30, POWER = 2.5;
-const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
 /** Slow motion, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
 const SLOW = 0.2, CALLED = 1600, AGENTS_LEAD = 1;
 /** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
@@ -92,7 +91,7 @@ class Page {
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure(`Discard this frame and begin a new game? ${this.state.by_link ? "This one stays under “Games by link”." : "This cannot be undone."}`, "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
+    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { breaker: 1 - this.state.breaker, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
@@ -103,7 +102,6 @@ class Page {
     fill(by("rules"), this.games);
     by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : Object.keys(LAYOUTS), undefined, name => LAYOUTS[name]);
     by("rules").onchange();
-    fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
       fill(by(`who-${k}`), this.players);
@@ -245,14 +243,13 @@ class Page {
     this.show();
   }
 
-  /** Ask for confirmation before a game with strokes, or a match, is discarded that is not over. */
+  /** Ask for confirmation before a frame with strokes is discarded that is not over. */
   async sure(question, yes, then) {
-    const { strokes, best_of: length, phase, match_over: ended } = this.state ?? {};
-    if (length === 1 && (!strokes || phase === "over") || ended || await confirmed(question, yes)) then();
+    if (!this.state?.strokes || this.state.phase === "over" || await confirmed(question, yes)) then();
   }
 
   begin() {
-    this.go("new", { layout: by("layout").value, game: by("rules").value, best_of: Number(by("best-of").value), seed: seed() });
+    this.go("new", { layout: by("layout").value, game: by("rules").value, seed: seed() });
     by("start").open = false;
     this.compact();
   }
@@ -483,7 +480,6 @@ class Page {
       by(`who-${k}`).value = state.players[k];
       by(`noise-${k}`).value = state.noise[k];
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
-      by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
     fill(by("level"), [...Object.keys(this.menu), OWN], this.strength, name => this.menu[name]?.short ?? name);
     by("level-about").textContent = this.menu[this.strength]?.about ?? "";
@@ -569,14 +565,13 @@ class Page {
     const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = Math.max(0, ...this.state.breaks[winner] ?? []);
     by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
-    const { match_over: ended, best_of: length, frames } = this.state;
-    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}${best < FINE ? "" : ` with ${breakWords(best)}`}`;
+    by("over-who").textContent = `${labels[winner]} won the frame${best < FINE ? "" : ` with ${breakWords(best)}`}`;
     by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
     by("over-last").textContent = ending(this.state, last, me);
   }
 
-  get next() { return this.state.by_link ? "New game by link" : this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
+  get next() { return this.state.by_link ? "New game by link" : "Next frame"; }
 
   /** An error message beside a place on the table. */
   bubble(text, x, y) {
