@@ -22,7 +22,6 @@ from ..physics.table import Table
 from ..planning import Positions, pots
 from ..play.service import OFFERED, BusyError
 from ..players.cue_stroke import cue_strokes
-from ..players.requests import STROKE
 from ..players.seen import SeenPlayer
 from ..render.pygame_balls import BOLD, pygame_, typeset
 from ..render.pygame_view import View, draw
@@ -154,10 +153,8 @@ class Desk:
             return words, jpeg
         shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
         said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
-        where = (
-            f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels are a metre."
-        )
-        return "\n".join([words, *said, f"{where} {_AXES}"]), jpeg
+        where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}"
+        return "\n".join([words, *said, f"{where}; {view.scale:.1f} pixels are a metre. {_AXES}"]), jpeg
 
     def _strokes(self, fields: Fields) -> tuple[str, None]:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
@@ -176,8 +173,6 @@ class Desk:
             if len(fields) > 1:
                 raise refuse_what("number", "one argument of several", "must be given alone")
             fields = take_stroke(fields["number"], self._lies(), self._game.options)
-        elif not {"choice", *STROKE} & set(fields):
-            raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
         happened = self._game.play(fields)
         words, jpeg = self._look({})
         return f"{happened}\n\n{words}", jpeg

@@ -51,7 +51,7 @@ def service_of(args: argparse.Namespace) -> "Service":
 
     from ..planning.position import Position
     from ..players.resolver import players_of
-    from .levels import USUAL
+    from .levels import BY_NAME, USUAL
     from .person import Person
     from .service import PERSON, Seats, Service
     from .session import Session
@@ -63,7 +63,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), USUAL)])
-    session.noise[:] = ["amateur", seats.usual_noise(1, "professional")]
+    session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
     if args.position is not None:
         read = read_json(args.position, "position")
         if isinstance(read, dict) and read.get("format") == "snooker-game":

@@ -45,7 +45,7 @@ class Route(NamedTuple):
 
 def _state(service: Service, fields: dict[str, Any]) -> None:
     if "after" in fields:
-        after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 60.0)
+        after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 25.0)
         service.wait(integer("after", after, 0, MOST), seconds)
 
 
@@ -63,9 +63,7 @@ def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    strikes = any(name in fields for name in STROKE)
-    if not strikes and "choice" not in fields:
-        raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
+    strikes = "choice" not in fields or any(name in fields for name in STROKE)
     nominated = read_colour("nominate", fields["nominate"]) if "nominate" in fields else AUTO
     struck = None
     with service.acting(_revision(fields)) as session:
@@ -126,18 +124,11 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(any_turn=True, anew="players" in fields) as session:
-        noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
+        session.noise[:] = read_levels("noise", fields.get("noise", session.noise))
         session.practice = truth("practice", fields.get("practice", session.practice))
         session.cue = cast(CueKind, choice("cue", fields.get("cue", session.cue), CUES))
         if "players" in fields:  # last, since seats are not given back after an error
-            seats, own = service.seats, service.seats.errors_of_host(session)
-            agents = [seats.is_agent(k) for k in (0, 1)]
-            seats.sit(fields["players"])
-            service.vacant = False
-            for k in (0, 1):  # a person does not take over the errors of an agent
-                mine = own if agents[k] and not seats.is_agent(k) else session.noise[k]
-                session.noise[k] = seats.usual_noise(k, mine)
-        session.noise[:] = noise or session.noise
+            service.seats.sit(fields["players"])
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -358,7 +349,6 @@ POST: dict[str, Route] = {
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
-    "sit": Route(lambda service, fields: service.sit_down(), friend=True),
     # both hold the random stream: the host's alone
     "link": Route(partial(_pass_on, form=lambda session: {"link": write_link(session)})),
     "save": Route(partial(_pass_on, form=Session.save)),

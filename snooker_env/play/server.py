@@ -62,9 +62,8 @@ class RefusedError(Exception):
         self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
     ):
         super().__init__(message)
-        self.status: int = status
+        self.status, self.headers = status, headers
         self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
-        self.headers: dict[str, str] = headers
 
 
 class PlayHandler(BaseHTTPRequestHandler):
@@ -327,8 +326,7 @@ class PlayServer(ThreadingHTTPServer):
 
 
 def _invite(who: str, addresses: list[str]) -> dict[str, Any]:
-    """What brings another device to the table: ``who`` it then is, the ``addresses``, and the QR code of the first one, as the
-    source of an image (``qr``) and for a terminal, white on black (``drawn``; without segno how to install it)."""
+    """Addresses for another device, the first one as a QR code: an image's source, and for a terminal, white on black."""
     try:
         import segno
     except ImportError:

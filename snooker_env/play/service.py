@@ -34,7 +34,6 @@ FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat ther
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
 ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
 """Who makes the request that this thread answers: the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER``."""
-LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
@@ -77,14 +76,6 @@ class Seats:
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
-
-    def usual_noise(self, seat: int, otherwise: NoiseName) -> NoiseName:
-        """The errors of the level on this seat; of anybody else ``otherwise``."""
-        return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
-
-    def errors_of_host(self, session: Session) -> NoiseName:
-        """The errors of the person at the host's page; if none sits there, an amateur's."""
-        return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
 
     def is_agent(self, seat: int) -> bool:
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
@@ -188,7 +179,6 @@ class Service:
         self.paused: bool = False  # whether an agent waits for ``go_on``
         self.trouble: str = ""  # why the last agent did not play
         self.invites: list[dict[str, Any]] = []  # what the host may pass on, if others can come to the table
-        self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False
@@ -211,18 +201,6 @@ class Service:
         """The names of both players, as seen by ``me``; alone at the table a person is "You"."""
         alone = self.session.practice and self.seats.who[0] == self.me
         return "You" if alone else self.seats.label(0, self.me), self.seats.label(1, self.me)
-
-    def sit_down(self) -> None:
-        """Seat the friend as the second player, unless somebody has played or the host has chosen who sits there."""
-        if FRIEND in self.seats.who:
-            return
-        with self.acting(any_turn=True) as session:
-            if FRIEND not in self.seats.names:
-                raise refuse("seat", 2, "must be open to friends: start the game with --host")
-            if not self.vacant or session.strokes or session.practice:
-                allowed = "must be free: ask your host to choose you as the opponent, under New game"
-                raise refuse("seat", 2, allowed)
-            self.seats.who[1], session.noise[1] = FRIEND, self.seats.errors_of_host(session)
 
     def check_turn(self) -> None:
         """ValueError unless whoever asks is to play."""
@@ -305,7 +283,7 @@ class Service:
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""
-        until = monotonic() + min(seconds, LONGEST_WAIT)
+        until = monotonic() + seconds
         with self._changed:
             while self.revision == revision and not self._closed and (left := until - monotonic()) > 0:
                 self._changed.wait(left)

@@ -708,6 +708,9 @@ def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):
         host.page.keyboard.press("Escape")
         phone = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
         friend = Shown(chromium, line, address=theirs, **phone)
+        assert friend.page.inner_text("#seat").startswith("You are watching until your host chooses you")
+        host.page.click("#start summary")
+        host.page.select_option("#level", "friend")
         friend.until("page.door.seated")
         watcher = Shown(chromium, line, address=only)
         host.until("page.state.labels[1] === 'Friend'")

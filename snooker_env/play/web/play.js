@@ -407,18 +407,18 @@ class Page {
     }
   }
 
-  /** Seat the chosen opponent; one of the five errs as its level says, the person as before. */
+  /** The errors of who sits down: a level's own, a professional's of other agents, of a person those given. */
+  errors(who, own) { return this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? own : "professional"); }
+
+  /** Seat the chosen opponent; the person errs as before. */
   level() {
-    const who = by("level").value;
-    if (who in this.menu) this.go("players", { players: ["person", who], practice: false });
+    const who = by("level").value, { players, noise } = this.state, own = noise[players.indexOf("person")] ?? "amateur";
+    if (who in this.menu) this.go("players", { players: ["person", who], noise: [own, this.errors(who, own)], practice: false });
   }
 
-  /** Send the players; a new agent gets its level's errors or a professional's, a person an amateur's. */
+  /** Send the players, a new one with errors of its own. */
   seats(changed = -1) {
-    if (changed >= 0) {
-      const who = by(`who-${changed}`).value;
-      by(`noise-${changed}`).value = this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? "amateur" : "professional");
-    }
+    if (changed >= 0) by(`noise-${changed}`).value = this.errors(by(`who-${changed}`).value, "amateur");
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
