@@ -279,7 +279,6 @@ def _check_length(arguments: Fields) -> None:
 
 
 def serve(desk: Desk) -> "Server[Any]":
-    """The server of the SDK whose tools are those of a desk."""
     try:
         import anyio.to_thread
         from mcp import types

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from .._lib.check import integer
 from .._lib.command import stop_with_reader
-from .._lib.files import read_json
 from ..players.model_options import add_model_options, options_of_words
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     file = Path(folder).expanduser() / "snooker_env" / "person.json"
     person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
     add("--person", type=Path, default=file, metavar="FILE", help=person)
-    add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
+    add("--position", type=Path, metavar="FILE", help="begin with this position (JSON)")
     add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
     add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
@@ -46,7 +45,6 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
 
 
 def service_of(args: argparse.Namespace) -> "Service":
-    """The game that the arguments ask for; ValueError or OSError if something is invalid."""
     import numpy as np
 
     from ..planning.position import Position
@@ -65,11 +63,7 @@ def service_of(args: argparse.Namespace) -> "Service":
     seats.sit([PERSON, next(iter(agents), USUAL)])
     session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
     if args.position is not None:
-        read = read_json(args.position, "position")
-        if isinstance(read, dict) and read.get("format") == "snooker-game":
-            session.load(read)
-        else:
-            session.set_up(Position.load(args.position))
+        session.set_up(Position.load(args.position))
     return Service(session, seats, Person(args.person))
 
 
@@ -109,7 +103,6 @@ def _invite(server: "PlayServer") -> None:
 
 @stop_with_reader()
 def main(argv: list[str] | None = None) -> int:
-    """Serve until Ctrl-C."""
     args = _arguments(argv)
     try:
         service = service_of(args)

@@ -128,7 +128,7 @@ def report(service: Service) -> dict[str, Any]:
         waits = "is waiting: press Continue." if host else "is waiting."
         waits = waits if service.paused else "is thinking."
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
-    if host and service.friend_to_play:
+    if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
         state["words"] = "It is your friend's turn: send the link."
     elif by_link and act.what == "new":
         state["last"] = "New frame. Play first, then send your friend the link."

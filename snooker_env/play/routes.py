@@ -32,13 +32,11 @@ from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report
 from .service import LINKED, Reviewing, Service, StaleError
 from .session import Session, read_levels
 
-Handler = Callable[[Service, dict[str, Any]], Any]
-
 
 class Route(NamedTuple):
     """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
 
-    handler: Handler
+    handler: Callable[[Service, dict[str, Any]], Any]
     fields: tuple[str, ...] = ()
     friend: bool = False  # whether not the host alone may post it, but a friend, too
 
@@ -136,23 +134,18 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
         session.concede()
 
 
-def _pass_on(service: Service, fields: dict[str, Any], form: Callable[[Session], Any]) -> Any:
+def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
-        return form(session)
+        return {"link": write_link(session)}
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
     seat, by_link = fields.get("seat"), "seat" in fields
     if seat is not None:
         integer("seat", seat, 0, 1)
-    if by_link and "link" not in fields:
-        raise refuse("seat", seat, "must be left out without a link")
     with service.acting(pause=True, anew=True) as session:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
-        if "link" not in fields:
-            session.load(fields.get("saved"))
-        else:
-            open_link(session, fields["link"], agreed=by_link)
+        open_link(session, fields.get("link"), agreed=by_link)
         if not by_link:
             service.seats.share_no_more()
             return
@@ -188,7 +181,7 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
     names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
     names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-    return one.to_dict() | names | _draw(session, one.stroke)
+    return one.to_dict() | names | _paths(_play_exactly(session, one.stroke))
 
 
 def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
@@ -203,12 +196,7 @@ def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
 
 
 def _hits(shot: Shot) -> Any:
-    """The events in which the cue ball met a ball."""
     return shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & (shot.events["i"] == CUE)]
-
-
-def _draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
-    return _paths(_play_exactly(session, stroke))
 
 
 def _paths(shot: Shot) -> dict[str, Any]:
@@ -228,7 +216,7 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         stroke = take_stroke(session, fields)
         stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
         places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
-        return _draw(session, stroke) | vars(stops) | places
+        return _paths(_play_exactly(session, stroke)) | vars(stops) | places
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -287,7 +275,6 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
 
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    """Begin a review of what was played, or stop the one that is being made."""
     with service.reading() as session:
         if service.reviewing:
             service.reviewing.running = False
@@ -314,7 +301,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking() as session:
         session.cue = act.played.cue_kind
         session.go_to(reviewing.acts, k)
-        played, best = _paths(act.played.shot), _draw(session, one.best.stroke)
+        played, best = _paths(act.played.shot), _paths(_play_exactly(session, one.best.stroke))
         best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
         return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
 
@@ -349,10 +336,8 @@ POST: dict[str, Route] = {
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
-    # both hold the random stream: the host's alone
-    "link": Route(partial(_pass_on, form=lambda session: {"link": write_link(session)})),
-    "save": Route(partial(_pass_on, form=Session.save)),
-    "load": Route(_load, ("saved", "link", "seat")),
+    "link": Route(_link),  # it holds the random stream: the host's alone
+    "load": Route(_load, ("link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
     "reviewed": Route(_reviewed, ("stroke",)),
     "again": Route(_again, ("stroke",)),

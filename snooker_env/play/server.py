@@ -311,7 +311,6 @@ class PlayServer(ThreadingHTTPServer):
         return False
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection, then free its place."""
         try:
             super().process_request_thread(request, client_address)
         finally:

@@ -203,14 +203,9 @@ class Service:
         return "You" if alone else self.seats.label(0, self.me), self.seats.label(1, self.me)
 
     def check_turn(self) -> None:
-        """ValueError unless whoever asks is to play."""
-        striker = self.session.frame.striker
-        if self.agent_to_play():
-            raise refuse("turn", self.labels[striker], "must be a person's: it is an agent's turn")
-        if self.friend_to_play:
-            raise refuse("turn", "Friend", "must be yours: send the link of the game")
-        if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
-            raise refuse("turn", self.labels[striker], "must be yours: it is the other player's turn")
+        frame = self.session.frame
+        if self.seats.who[frame.striker] != self.me and frame.phase != "over":
+            raise refuse("turn", self.labels[frame.striker], "must be yours: the other player is to play")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -298,12 +293,6 @@ class Service:
     def agent_to_play(self) -> bool:
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
-
-    @property
-    def friend_to_play(self) -> bool:
-        """Whether it is the turn of a friend by link."""
-        frame = self.session.frame
-        return frame.phase != "over" and self.seats.who[frame.striker] == LINKED
 
     @property
     def thinking(self) -> bool:

@@ -54,7 +54,6 @@ class Act:
 
     @property
     def standing(self) -> Standing:
-        """The frame after it."""
         places, here = np.array(self.state["positions"]), np.array(self.state["on_table"])
         return Standing(Frame.from_dict(self.state["frame"]), places, here)
 
@@ -114,7 +113,6 @@ class Session:
         return found
 
     def room(self, stroke: CueStroke) -> Room:
-        """How the cue finds room for a stroke as the table lies; nothing is played."""
         return room_for(stroke.numbers(), self.as_visit(), self.options.rules)
 
     @property
@@ -135,7 +133,6 @@ class Session:
         return of_tables(self.tables)
 
     def as_visit(self) -> Positions:
-        """The next stroke's position, as one of a visit."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         return visit_of(self.frame, self.position)
@@ -170,7 +167,6 @@ class Session:
     def new(
         self, *, layout: str | None = None, seed: int = 0, breaker: int = 0, game: str | None = None
     ) -> None:
-        """Begin a frame; ``layout`` and ``game`` stay unless they are given."""
         integer("seed", seed, 0, 2**63 - 1)
         integer("breaker", breaker, 0, 1)
         self._play_by(self._but(layout, game))
@@ -255,7 +251,6 @@ class Session:
         return self._decide("choice", after, what, {"choice": what})
 
     def concede(self) -> Act:
-        """End the frame: the striker concedes."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over")
         return self._decide("concede", self.frame.concede(self.frame.striker), "", {"declare": "concede"})
@@ -279,7 +274,6 @@ class Session:
     def set_up(
         self, position: Position, *, scores: Any = (0, 0), striker: int = 0, free_ball: bool = False
     ) -> None:
-        """Put the balls as in a position. ValueError names the ball or the field."""
         if position.over:
             raise refuse("over", True, "must be false: there is no stroke to play")
         positions, on_table, _ = position.arrays()
@@ -294,11 +288,10 @@ class Session:
         self._did(Act("set_up", self.state))
 
     def undo(self) -> bool:
-        """Undo the last act; returns whether there was one."""
         return self._go(self.at - 1)
 
     def redo(self) -> bool:
-        """Redo an act that was undone; returns whether there was one."""
+        """Do the act again that was undone last; returns whether there was one, as ``undo``."""
         return self._go(self.at + 1)
 
     def go_to(self, acts: list[Act], at: int) -> None:

@@ -284,5 +284,3 @@ def test_a_game_by_link_leaves_nothing_behind_and_begins_at_a_break(game):
         ValueError, match=r"^scores = \[0, 90\]: must be 0 at the beginning of a game by link"
     ):
         game("load", link=write_link(forged), seat=0)
-    with pytest.raises(ValueError, match=r"^seat = 0: must be left out without a link"):
-        game("load", saved=game("save"), seat=0)

@@ -590,13 +590,13 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     shown.page.click("#files summary")
     shown(LONG)
     shown.page.click("#share")
-    said = "A link can hold 30 kB, but this one needs 31 kB: use Save or Replay file instead."
+    said = "A game can have 30 kB, but this one needs 31 kB: use Replay file instead."
     shown.until("document.getElementById('last').textContent === argument", said)
     shown.page.reload()
     shown.until(f"page.state && {SETTLED}")
     shown.page.click("#files summary")
     for link, words in (
-        ("#constructor=AAAA", "This is not a link to a game."),
+        ("#constructor=AAAA", "This is not a game: a link ends with #replay= and its text."),
         ("#replay=AAAA", "link = 4 characters: must be whole: this one is damaged, copy it again"),
     ):
         shown.page.fill("#link", link)

@@ -93,10 +93,10 @@ class Page {
     by("again").onclick = () => this.again();
     by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { breaker: 1 - this.state.breaker, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
-    by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
+    by("save").onclick = () => this.try(async () => { keep("snooker-game.txt", await this.share.link(), "text/plain"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
-    by("load").onclick = () => this.sure("Discard this frame and load a file?", "Load", () => by("file").click());
-    by("file").onchange = () => this.try(() => this.load());
+    by("load").onclick = () => by("file").click();
+    by("file").onchange = () => this.try(async () => { this.share.open(await by("file").files[0].text()); by("file").value = ""; });
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("rules"), this.games);
@@ -389,22 +389,6 @@ class Page {
       this.take(state);
     } catch (error) { this.trouble(error); }
     this.show();
-  }
-
-  async load() {
-    const [file] = by("file").files;
-    by("file").value = "";
-    if (!file) return undefined;
-    const text = await file.text();
-    try {
-      const saved = JSON.parse(text), position = saved?.format === undefined;
-      if (position && !saved?.cue) throw new Error();
-      await this.drills.stop();
-      return await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
-    } catch (error) {
-      if (error.message && !(error instanceof SyntaxError)) throw error;
-      throw new Error(`${file.name} is not a saved game.${text[0] === "<" ? " Open a replay directly in a browser." : ""}`);
-    }
   }
 
   /** The errors of who sits down: a level's own, a professional's of other agents, of a person those given. */

@@ -1,4 +1,4 @@
-/** How is a game passed on? By the server's link to all that was played, as text after the # of the page's address. */
+/** How is a game kept and passed on? As the server's link to all that was played: in a file, or after the # of the page's address. */
 
 import { ask, by } from "./play_parts.js";
 
@@ -19,12 +19,17 @@ export class Share {
     window.onhashchange = () => this.fromAddress();
   }
 
+  async link() {
+    const { link } = await ask("link", {});
+    if (link.length > MOST) throw new Error(`A game can have ${MOST / 1000} kB, but this one needs ${Math.ceil(link.length / 1000)} kB: use Replay file instead.`);
+    return `#replay=${link}`;
+  }
+
   /** Copy a link, and show it in the field: where a page may not write the clipboard, it can be copied there. */
   async offer() {
     try {
-      const field = by("link"), { link } = await ask("link", {});
-      if (link.length > MOST) throw new Error(`A link can hold ${MOST / 1000} kB, but this one needs ${Math.ceil(link.length / 1000)} kB: use Save or Replay file instead.`);
-      field.value = `#replay=${link}`;
+      const field = by("link");
+      field.value = await this.link();
       field.select();
       let where = "copied";
       try { await navigator.clipboard.writeText(field.value); field.blur(); } catch { where = "in the field Link"; }
@@ -43,7 +48,7 @@ export class Share {
   open(text) {
     const { app } = this, [, kind, link] = /#(replay|friend)=([\w-]+)\s*$/.exec(text) ?? [];
     if (kind === "friend") app.friend.open(link);
-    else if (kind) app.sure("Discard this frame and open the game from the link?", "Open", () => app.go("load", { link }));
-    else app.trouble(new Error("This is not a link to a game."));
+    else if (kind) app.sure("Discard this frame and open this game?", "Open", () => app.go("load", { link }));
+    else app.trouble(new Error("This is not a game: a link ends with #replay= and its text."));
   }
 }
