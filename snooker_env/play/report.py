@@ -1,6 +1,5 @@
 """What does the page show? The game as JSON types, and as text."""
 
-from math import radians
 from typing import Any
 
 from ..advice import POCKET_WORDS
@@ -21,7 +20,6 @@ from .session import Act
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
 IN_SESSION = ("begun", "practice", "game", "cue", "breaks", "hints", "undone")
 
 
@@ -49,33 +47,28 @@ def scene(service: Service) -> dict[str, Any]:
     }
 
 
-_DECIDED = {
-    "play": "played on",
-    "play_again": "asked the opponent to play again",
-    "replace": "had the balls put back",
-    "anywhere": "took the cue ball in hand",
-}
+_SAID = {
+    "play": "{} played on.",
+    "play_again": "{} asked the opponent to play again.",
+    "replace": "{} had the balls put back.",
+    "anywhere": "{} took the cue ball in hand.",
+    "concede": "{} conceded the frame.",
+    "claim": "{} claimed the frame.",
+    "set_up": "Position set up.",
+    "load": "Game loaded.",
+    "new": "New frame.",
+}  # of an act that is no stroke, or of the decision after a foul
 
 
 def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
     """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
     who = "" if act.player is None else labels[act.player]
-    if act.what == "choice":
-        said = f"{who} {_DECIDED[act.detail]}."
-        return said if before is None or before.played is None else f"{last_words(before, labels)} {said}"
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
-        said = f"{who}{nominated}: {sentence(act.played, labels)}"
-        if act.room is None or not (act.room.moved or act.room.elevation > STEEP) or not act.room.words:
-            return said
-        return f"{said} {act.room.words[:1].upper()}{act.room.words[1:]}."
-    return {
-        "concede": f"{who} conceded the frame.",
-        "claim": f"{who} claimed the frame.",
-        "set_up": "Position set up.",
-        "load": "Game loaded.",
-        "new": "New frame.",
-    }[act.what]
+        return f"{who}{nominated}: {sentence(act.played, labels)}"
+    said = _SAID[act.detail or act.what].format(who)
+    answers = act.what == "choice" and before is not None and before.played is not None
+    return f"{last_words(before, labels)} {said}" if answers and before else said
 
 
 def table_after(

@@ -360,19 +360,14 @@ class Service:
                 elif frame.phase == "choice" and what != "play" and what in frame.choices:
                     session.choose(what)
                 else:
-                    self._play(decided)
+                    if frame.phase == "choice":
+                        session.choose("play")
+                    (stroke,) = cue_strokes(decided, session.position)
+                    if session.frame.in_hand and np.isfinite(decided.place[0]).all():
+                        session.place(*decided.place[0].tolist())
+                    nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
+                    sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
+                    session.play(stroke, nominated=nominated if sensible else AUTO)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""
-
-    def _play(self, decided: Strokes) -> None:
-        """An agent's stroke, after its decision to play if the opponent has fouled."""
-        session = self.session
-        if session.frame.phase == "choice":
-            session.choose("play")
-        (stroke,) = cue_strokes(decided, session.position)
-        if session.frame.in_hand and np.isfinite(decided.place[0]).all():
-            session.place(*decided.place[0].tolist())
-        nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
-        sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
-        session.play(stroke, nominated=nominated if sensible else AUTO)

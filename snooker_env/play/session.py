@@ -48,7 +48,6 @@ class Act:
     player: int | None = None  # who did it
     played: Played | None = None  # for a stroke: as it was struck, simulated and judged
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
-    room: Room | None = None  # for a stroke: how the cue found room for it
     asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
     luck: float = 0.0  # of a stroke, in its player's chance to win; 0 in practice
 
@@ -202,7 +201,7 @@ class Session:
         striker = frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self.options, self.position)
-        kept, room = list[Played](), self.room(stroke)
+        kept = list[Played]()
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
         asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
@@ -215,7 +214,7 @@ class Session:
             self._hand_back()
         self.grid.settle(tables, before["positions"])
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, played, words, room, asked, luck))
+        return self._did(Act("stroke", self.state, striker, played, words, asked, luck))
 
     def _luck(self, actions: Floats, striker: int) -> float:
         """The luck of a stroke that is about to be played, by the chance to win under the larger errors of both."""
@@ -251,8 +250,6 @@ class Session:
         return self._decide("choice", after, what, {"choice": what})
 
     def concede(self) -> Act:
-        if self.frame.phase == "over":
-            raise refuse("phase", "over", "must not be over")
         return self._decide("concede", self.frame.concede(self.frame.striker), "", {"declare": "concede"})
 
     def claim(self) -> Act:
@@ -301,17 +298,12 @@ class Session:
         self._go(at)
 
     def save(self) -> dict[str, Any]:
-        game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
-        return {"format": "snooker-game", "version": 1, **game}
+        return {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
 
     def load(self, saved: object) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
-        fields = ("format", "version", "practice", "noise", "cue", "state")
-        if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            raise refuse_what("saved", "something else", 'must be a saved game, "format": "snooker-game"')
-        if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
-            what = f"version {saved.get('version')!r} with {sorted(saved)}"
-            raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
+        if not isinstance(saved, dict) or set(saved) != {"practice", "noise", "cue", "state"}:
+            raise refuse_what("saved", "something else", "must be a dict with practice, noise, cue and state")
         noise = read_levels("saved.noise", saved["noise"])
         practice, cue = truth("saved.practice", saved["practice"]), choice("saved.cue", saved["cue"], CUES)
         state = saved["state"]
@@ -321,8 +313,7 @@ class Session:
         with self.as_a_whole():
             self._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
             self._set(state)
-            self.practice, self.cue = practice, cast(CueKind, cue)
-            self.noise = noise
+            self.practice, self.cue, self.noise = practice, cast(CueKind, cue), noise
             self._begin("load")
 
     def _begin(self, what: str) -> None:
