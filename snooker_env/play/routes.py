@@ -359,7 +359,7 @@ def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
             some = f"must be one of {list(route.fields)}"
             raise refuse("field", name, some if route.fields else "must be left out: there are no fields")
     try:
-        reply = route.handler(service, fields)
+        reply = route.handler(service, dict(fields))
     except StaleError:
         return {"stale": True}
     if reply is not None:
