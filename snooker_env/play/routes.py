@@ -13,6 +13,7 @@ from .._lib.check import choice, integer, number, refuse, truth
 from .._lib.types import CueKind
 from ..advice import CueStroke, Suggestion, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
+from ..advice.room import room_for
 from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES
@@ -223,7 +224,7 @@ def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
     stroke = take_stroke(twin, fields)
-    room = twin.room(stroke).to_dict()
+    room = room_for(stroke.numbers(), twin.as_visit(), twin.options.rules).to_dict()
     if twin.frame.phase != "stroke":
         return room
     shot, first, heads = _play_exactly(twin, stroke), None, None

@@ -12,8 +12,7 @@ import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import CueKind, Floats, Ints, NoiseName
-from ..advice import CueStroke, Room
-from ..advice.room import room_for
+from ..advice import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, mask_of_present
 from ..game.fouls import AUTO
 from ..game.frame import Choice, Frame, write_frame
@@ -110,9 +109,6 @@ class Session:
                 own = found[one.player]
                 own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
         return found
-
-    def room(self, stroke: CueStroke) -> Room:
-        return room_for(stroke.numbers(), self.as_visit(), self.options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
