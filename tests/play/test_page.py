@@ -4,6 +4,7 @@ import json
 import re
 import time
 from math import pi
+from pathlib import Path
 
 import pytest
 
@@ -549,6 +550,9 @@ def test_a_whole_replay_is_passed_on_as_a_link(shown):
     shown.until("document.getElementById('link').value.startsWith('#replay=')")
     link = shown.page.input_value("#link")
     assert 150 < len(link) < 300
+    with shown.page.expect_download() as saved:
+        shown.page.click("#save")
+    assert Path(saved.value.path()).read_text() == link
     shown.line("api/new", {"layout": "break_off", "seed": 3})
     shown.line("api/stroke", {"speed": 4.0, "aim": 1.5})
     shown.page.goto("about:blank")
@@ -599,6 +603,12 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
         shown.page.fill("#link", link)
         shown.page.keyboard.press("Enter")
         shown.until("document.getElementById('last').textContent === argument", words)
+    shown.line("api/new", {"layout": "colours"})
+    link = shown.line("api/link", {})[1]["link"]
+    shown.page.set_input_files(
+        "#file", {"name": "a", "mimeType": "text/plain", "buffer": f"#replay={link}".encode()}
+    )
+    shown.until("page.state.last === 'Game loaded.'")
     assert [text for text in shown.errors if "422" not in text] == []  # the refusal, which Chromium reports
     shown.errors.clear()
 
