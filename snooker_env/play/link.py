@@ -15,7 +15,7 @@ from .. import __version__
 from .._lib.check import integer, refuse, refuse_what
 from .._lib.files import strict_json
 from ..advice import CueStroke
-from ..game.balls import CUE, NAMES
+from ..game.balls import CUE
 from ..game.fouls import AUTO
 from ..game.frame import Frame
 from ..players.table_report import nominations_of
@@ -154,14 +154,14 @@ def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[s
     stroke = stroke_of([*numbers, digits.within(0, HIGH[4], values[4]) if tilts else 0])
     place = steps_of(asked.get("place") or [0.0, 0.0]).tolist() if frame.in_hand else []
     place = [digits.within(-BED, BED, step) * STEP for step in place] or None
-    colours = [NAMES[i] for i in nominations_of(frame)]
-    named = digits.one_of(["", *(["none"] if frame.free_ball else []), *colours], asked.get("nominate") or "")
+    open_to = [AUTO, *[DECLINED] * frame.free_ball, *nominations_of(frame)]
+    nominated = digits.one_of(open_to, asked.get("nominate"))
     setting = _setting(asked, first, frame)
     if digits.within(0, 1, int(setting != _setting({}, first, frame))):
-        open_to = list(LEVELS), (False, True), CUES
-        setting = [digits.one_of(*one) for one in zip(open_to, setting, strict=True)]
+        settings = list(LEVELS), (False, True), CUES
+        setting = [digits.one_of(*one) for one in zip(settings, setting, strict=True)]
     told = dict(zip(SETTING, setting, strict=True))
-    return {**stroke.to_dict(), **told, "place": place, "nominate": named or None}
+    return {**stroke.to_dict(), **told, "place": place, "nominate": nominated}
 
 
 def _setting(asked: dict[str, Any], first: dict[str, Any], frame: Frame) -> tuple[Any, ...]:
@@ -180,9 +180,8 @@ def _do(session: Session, asked: dict[str, Any]) -> None:
         session.noise[session.frame.striker] = noise
         if (place := asked["place"]) is not None and list(session.place(*place)) != place:
             raise refuse("place", place, "must be free for the cue ball in hand")
-        named = {None: AUTO, "none": DECLINED}
-        nominated = named[asked["nominate"]] if asked["nominate"] in named else NAMES.index(asked["nominate"])
-        session.play(CueStroke.of({name: asked[name] for name in STROKE}), nominated=nominated)
+        stroke = CueStroke.of({name: asked[name] for name in STROKE})
+        session.play(stroke, nominated=asked["nominate"])
 
 
 def _sum(positions: Places, on_table: Flags, frame: Frame) -> int:

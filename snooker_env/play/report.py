@@ -60,23 +60,20 @@ _SAID = {
 }  # of an act that is no stroke, or of the decision after a foul
 
 
-def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
-    """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
+def last_words(act: Act, labels: tuple[str, str]) -> str:
+    """An act in a sentence, after the foul that it answers."""
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
         return f"{who}{nominated}: {sentence(act.played, labels)}"
-    said = _SAID[act.detail or act.what].format(who)
-    answers = act.what == "choice" and before is not None and before.played is not None
-    return f"{last_words(before, labels)} {said}" if answers and before else said
+    foul = "" if act.answers is None or act.answers.played is None else last_words(act.answers, labels)
+    return f"{foul} {_SAID[act.detail or act.what].format(who)}".strip()
 
 
-def table_after(
-    act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
-) -> dict[str, Any]:
-    """The table and the scoreboard after an act; ``win_chance``: of seat 0; ``before``: the act before it."""
+def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
+    """The table and the scoreboard after an act; ``win_chance``: of seat 0."""
     frame, table = Frame.from_dict(act.state["frame"]), (act.state["positions"], act.state["on_table"])
-    own = {"win_chance": win_chance, "last": last_words(act, labels, before)}
+    own = {"win_chance": win_chance, "last": last_words(act, labels)}
     return report_game(frame, *table, labels) | own
 
 
@@ -85,17 +82,16 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.labels
     played = acts[k].played
     assert played is not None
-    before, both = acts[k - 2] if k > 1 else None, acts[k - 1 : k + 1]
-    chances = service.win_chances(both)
-    tables = [table_after(act, labels, chance, before) for act, chance in zip(both, chances, strict=True)]
+    both = acts[k - 1 : k + 1]
+    after = zip(both, service.win_chances(both), strict=True)
+    tables = [table_after(act, labels, chance) for act, chance in after]
     return encode_stroke(played, labels) | {"tables": tables}
 
 
 def report(service: Service) -> dict[str, Any]:
     session, seats, labels = service.session, service.seats, service.labels
     frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
-    before = session.acts[session.at - 2] if session.at > 1 else None
-    state = table_after(act, labels, service.win_chances([act])[0], before)
+    state = table_after(act, labels, service.win_chances([act])[0])
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
     state |= turn | {name: getattr(session, name) for name in IN_SESSION}

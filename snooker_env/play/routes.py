@@ -301,7 +301,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     assert act.played is not None
     with service.asking() as session:
         session.cue = act.played.cue_kind
-        session.go_to(reviewing.acts, k)
+        session.go_to(k, reviewing.acts)
         played, best = _paths(act.played.shot), _paths(_play_exactly(session, one.best.stroke))
         best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
         return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
@@ -310,7 +310,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _again(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
         reviewing = service.own_review()
-        session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
+        session.go_to(reviewing.act_of(fields.get("stroke"))[0], reviewing.acts)
         session.undone += 1
 
 

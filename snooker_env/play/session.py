@@ -2,7 +2,7 @@
 stroke that is played again meets the same execution errors."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -49,6 +49,7 @@ class Act:
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
     asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
     luck: float = 0.0  # of a stroke, in its player's chance to win; 0 in practice
+    answers: "Act | None" = None  # for a choice: the foul
 
     @property
     def standing(self) -> Standing:
@@ -200,7 +201,7 @@ class Session:
         kept = list[Played]()
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
+        asked["nominate"] = nominated
         tables.nominated[0] = nominated
         crew = Crew(self._buffers, lambda k, buffers, j, agents: kept.append(tables.record(k, buffers, j)))
         luck = self._luck(actions, striker)
@@ -281,17 +282,21 @@ class Session:
         self._did(Act("set_up", self.state))
 
     def undo(self) -> bool:
-        return self._go(self.at - 1)
+        return self.go_to(self.at - 1)
 
     def redo(self) -> bool:
         """Do the act again that was undone last; returns whether there was one, as ``undo``."""
-        return self._go(self.at + 1)
+        return self.go_to(self.at + 1)
 
-    def go_to(self, acts: list[Act], at: int) -> None:
-        """The game of these acts as it stood before act ``at``: those from there on can be done again."""
-        if self.acts[: len(acts)] != acts:  # else what was played since can be done again, too
-            self.acts = list(acts)
-        self._go(at)
+    def go_to(self, at: int, acts: Sequence[Act] = ()) -> bool:
+        """The game as it stood before act ``at``, of these acts if there are any; returns whether there is such a place."""
+        if self.acts[: len(acts)] != [*acts]:  # else what was played since can be done again, too
+            self.acts = [*acts]
+        if not 1 <= at <= len(self.acts):
+            return False
+        self._set(self.acts[at - 1].state)
+        self.at = at
+        return True
 
     def save(self) -> dict[str, Any]:
         return {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
@@ -317,22 +322,15 @@ class Session:
         self.hints, self.undone = [0, 0], 0
 
     def _decide(self, what: str, after: Frame, detail: str, asked: dict[str, str]) -> Act:
-        striker = self.frame.striker
+        striker, foul = self.frame.striker, self.acts[self.at - 1] if detail else None
         self._write(after)
-        return self._did(Act(what, self.state, striker, detail=detail, asked=asked))
+        return self._did(Act(what, self.state, striker, detail=detail, asked=asked, answers=foul))
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]
         self.acts.append(act)
         self.at += 1
         return act
-
-    def _go(self, at):
-        if not 1 <= at <= len(self.acts):
-            return False
-        self._set(self.acts[at - 1].state)
-        self.at = at
-        return True
 
     def _set(self, state: dict[str, Any]) -> None:
         # no rewards are paid here, and no stroke draws from the generator
