@@ -1,19 +1,15 @@
-"""Watch an agent play a visit or a frame: printed stroke by stroke, and written as a replay or a film.
-
-Without --out the replay, an HTML file, opens in the browser. Visits are played with a real cue on held-out tables, one seed
-after the other, as ``benchmark.play_visits`` does; --at-least shows the first of --tries visits with that many points, else the
-best one. With --frame the agent plays a frame against --opponent, with the miss rule "clear_path"."""
+"""Watch an agent play a visit or a frame: printed stroke by stroke, and written as a replay or a film."""
 
 import argparse
 import tempfile
 import webbrowser
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ._lib.check import integer, number, refuse, refuse_what
+from ._lib.check import integer, number, refuse
 from ._lib.command import exit_code
 from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
@@ -21,7 +17,7 @@ from .planning import Positions
 from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import players_of
-from .replays import Replay, replay
+from .replays import replay
 from .replays.chances import check_judge
 from .replays.document import SUFFIXES
 from .replays.film import encoder_file
@@ -37,10 +33,9 @@ def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
     reads = VISITS if options.get("task", "visit") == "visit" else FRAMES
     every: dict[str, Any] = {**options, "action": "box", "observation": "flat", **reads}
     env = SnookerEnv(**every)
-    bound, decision = who.at(env), 0
+    bound, decision, ended = who.at(env), 0, False
     env.keep_history = True
     env.reset(seed=seed)
-    ended = False
     while not ended:
         at = Positions.of(env)
         strokes = bound.play(at, decision_seeds(0, np.array([seed]), decision))
@@ -49,15 +44,8 @@ def play_episode(who: Player, seed: int, **options: object) -> SnookerEnv:
     return env
 
 
-def describe(played: Replay) -> Iterator[str]:
-    for k, stroke in enumerate(played.to_dict()["strokes"], 1):
-        cue = stroke["cue"]
-        spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
-        yield f"{k:3}  {stroke['ball_on']:<10}  {cue['speed']:.2f} m/s, {spin}   {stroke['words']}"
-
-
 def parser() -> argparse.ArgumentParser:
-    p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=str(__doc__).split("\n\n")[0])
+    p = argparse.ArgumentParser(prog=f"python -m {NAME}", description=__doc__)
     add = p.add_argument
     add("--agent", help=f"player: a name, a model's .zip or MODULE:CLASS [{USUAL}; with --frame {TACTICIAN}]")
     add("--frame", action="store_true", help="play a whole frame against --opponent")
@@ -92,12 +80,8 @@ def _film_options(args: argparse.Namespace) -> dict[str, Any]:
     integer("tries", args.tries, 1, 10**9)
     if args.out and args.out.is_dir():
         raise refuse("out", str(args.out), "must be a file, not a folder")
-    try:
-        if args.out:
-            args.out.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        what = f"a file that cannot be written ({error.strerror})"
-        raise refuse_what("out", what, "must lie in a folder") from None
+    if args.out:
+        args.out.parent.mkdir(parents=True, exist_ok=True)
     return film
 
 
@@ -126,18 +110,18 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     env, seed, names = find_episode(args)
+    made, where, judge = f"{names[0]}: {env.points} points", f"table {seed}, layout {args.layout}", None
     if args.frame:
         scores = env.tables.standing(0)["scores"]
-        made = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}"
-        where = f"frame {seed}, noise {args.noise}"
-    else:
-        made = f"{names[0]}: {env.points} points"
-        where = f"table {seed}, layout {args.layout}, noise {args.noise}"
+        made, where = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}", f"frame {seed}"
+        judge = check_judge(player(TACTICIAN).at(env))
     title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
-    judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
-    print(*describe(played), sep="\n")
-    print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
+    for k, stroke in enumerate(played.to_dict()["strokes"], 1):
+        speed, side, top = (stroke["cue"][name] for name in ("speed", "side", "top"))
+        how = f"{speed:.2f} m/s, side {side:+.2f}, top {top:+.2f}"
+        print(f"{k:3}  {stroke['ball_on']:<10}  {how}   {stroke['words']}")
+    print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where}, noise {args.noise})")
     if env.points < args.at_least:
         print(f"No visit reached {args.at_least} points in {args.tries} tries; this is the best one.")
     file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"

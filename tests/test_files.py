@@ -19,7 +19,6 @@ from agents.players.trained import load_player
 from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json
 from snooker_env.advice import read_strokes
 from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result
-from snooker_env.play.__main__ import _read as read_position
 from snooker_env.players.requests import read_object
 from snooker_env.players.saved import saved_player
 from tests.flips import flipped
@@ -83,7 +82,6 @@ READERS = {
 
 BARE = {
     "a command's file": lambda file: read_json("file", file, "must be JSON"),
-    "the page's position": read_position,
     "the page": lambda file: read_object(file.read_bytes() or b"[]"),
 }
 """Readers of any object."""

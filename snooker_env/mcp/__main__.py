@@ -34,7 +34,6 @@ def _arguments(words: list[str]) -> argparse.Namespace:
 
 
 def _desk(args: argparse.Namespace, command: str) -> Desk:
-    """The tools that the arguments ask for; ValueError if they do not fit together."""
     if args.out is None:
         if args.label is not None:
             raise refuse("label", args.label, "must be left out without --out")

@@ -16,7 +16,6 @@ from ..benchmark.results import result_of, write_result
 from ..benchmark.run import read_earlier
 from ..benchmark.tasks import HELD_OUT_SEED, Task
 from ..game.layouts import LAYOUTS
-from ..game.rule_sets import RULES
 from ..planning import Positions
 from ..play.routes import GET, POST, answer
 from ..play.service import OFFERED, PERSON, Seats, Service
@@ -52,8 +51,8 @@ class FreeGame:
         advice = truth("advice", fields.get("advice", False))
         layout = choice("layout", fields.get("layout", "opened"), DEALT)
         seed = integer("seed", fields.get("seed", 0), 0, HELD_OUT_SEED - 1)
-        game = choice("game", fields.get("game", "snooker"), tuple(RULES))
-        answer(self._service, POST["new"], {"layout": layout, "seed": seed, "game": game})
+        deal = {"layout": layout, "seed": seed, "game": fields.get("game", "snooker")}
+        answer(self._service, POST["new"], deal)
         alone = opponent == ALONE
         seats = {"players": [PERSON, PERSON if alone else opponent], "noise": [noise, noise]}
         answer(self._service, POST["players"], seats | {"practice": alone})

@@ -1,4 +1,5 @@
-"""Which tools may a client call? Those of a track, within limits; an error is one sentence."""
+"""Which tools may a client call? Those of a track, within limits; an error is one sentence. The menu of strokes says what closed
+forms foresee of each."""
 
 import base64
 import io
@@ -7,22 +8,32 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.install import missing
-from .._lib.types import Bools, Floats
-from ..game.balls import N_REDS
+from .._lib.types import Bools, Floats, Ints
+from ..game.balls import N_REDS, NAMES
+from ..game.frame import CHOICES
+from ..game.frame_columns import BALL_ON, PLAY
 from ..game.rule_sets import RULES
+from ..geometry import HALF_LENGTH, HALF_WIDTH, POCKETS
 from ..physics.table import Table
-from ..planning import Positions
+from ..planning import Positions, pots
 from ..play.service import OFFERED, BusyError
-from ..players.requests import STROKE
+from ..players.cue_stroke import cue_strokes
+from ..players.seen import SeenPlayer
 from ..render.pygame_balls import BOLD, pygame_, typeset
 from ..render.pygame_view import View, draw
 from ..render.scene import scene
 from ..simulation import SimulationError
+from ..tasks import foreseen as columns
+from ..tasks.box_actions import FASTEST
 from ..tasks.noise import LEVELS
+from ..tasks.observations import STROKE_SIZE
+from ..tasks.options import Options
+from ..tasks.stroke_menu import DECISIONS, SPEEDS, TOPS
 from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
-from .menu import MEANING, foresee_strokes, take_stroke
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -55,6 +66,23 @@ _AXES = (
     'y grows to the right of the picture, towards the black end ("top" in the names of pockets); x grows downwards '
     '("right"). An aim of 0 rad points down, 1.571 points right.'
 )
+
+MEANING = (
+    "speed: m/s; chance: of potting the ball; x, y: where the cue ball stops; next: worth of the position left, in points, to "
+    "whoever plays next; promise: chance times the points of this pot and the next ones."
+)
+_SHOWN = {
+    "speed": (columns.F_SPEED, FASTEST),
+    "top": (columns.F_TOP, TOPS[-1]),
+    "points": (columns.F_POINTS, 7),
+    "chance": (columns.F_CHANCE, 1),
+    "foul": (columns.F_FOUL, 1),
+    "x": (columns.F_X, HALF_WIDTH),
+    "y": (columns.F_Y, HALF_LENGTH),
+    "cushions": (columns.F_NOSES, 5),
+    "next": (columns.F_PROSPECTS, columns.MOST_WORTH),
+    "promise": (columns.F_PROMISE, columns.MOST_PROMISE),
+}  # name of a number: the column that holds it, and over what
 
 
 class Tool(NamedTuple):
@@ -125,10 +153,8 @@ class Desk:
             return words, jpeg
         shown = ("scores", "break", "balls_on", "nominations", "choices", "in_hand")
         said = [f"{name}: {state[name]}" for name in shown] + [f"on the table: {[*state['positions']]}"]
-        where = (
-            f"The origin is at column {view.x:.0f}, row {view.y:.0f}; {view.scale:.1f} pixels are a metre."
-        )
-        return "\n".join([words, *said, f"{where} {_AXES}"]), jpeg
+        where = f"The origin is at column {view.x:.0f}, row {view.y:.0f}"
+        return "\n".join([words, *said, f"{where}; {view.scale:.1f} pixels are a metre. {_AXES}"]), jpeg
 
     def _strokes(self, fields: Fields) -> tuple[str, None]:
         n, at = integer("n", fields.get("n", LISTED), 1, MOST_LISTED), self._lies()
@@ -147,8 +173,6 @@ class Desk:
             if len(fields) > 1:
                 raise refuse_what("number", "one argument of several", "must be given alone")
             fields = take_stroke(fields["number"], self._lies(), self._game.options)
-        elif not {"choice", *STROKE} & set(fields):
-            raise refuse_what("speed", "nothing", "must be given, with aim or aim_at")
         happened = self._game.play(fields)
         words, jpeg = self._look({})
         return f"{happened}\n\n{words}", jpeg
@@ -164,6 +188,72 @@ class Desk:
         assert isinstance(self._game, FreeGame)
         self._lies()
         return self._game.advise(fields.get("n", 3)), None
+
+
+class _Reader:
+    """Sees the menu of one position and takes the stroke of a number."""
+
+    def __init__(self, at: Positions, options: Options, number: int):
+        task = "frame" if at.of_frames else "visit"
+        self.options = {"task": task, "action": "strokes", "observation": "strokes"}
+        self.number = number
+        try:
+            self.strokes = SeenPlayer(self, name="menu").at(options).play(at, [0])
+        except ValueError as error:
+            raise ValueError(str(error).removeprefix("player menu: act(...) returned ")) from None
+
+    def act(self, observations: Floats, masks: Bools, seeds: Ints) -> list[int]:
+        """The number, once it is known to be on the menu."""
+        self.row, (self.there,) = observations[0], masks
+        number = integer("number", self.number, 0, len(self.there) - 1)
+        if not self.there[number]:
+            raise refuse("number", number, "must be on the menu of this table")
+        return [number]
+
+
+def take_stroke(number: int, at: Positions, options: Options) -> dict[str, Any]:
+    """The stroke with this number, as fields of ``POST api/stroke``."""
+    strokes = _Reader(at, options, number).strokes
+    decision = int(strokes.decision[0])
+    if decision != PLAY:
+        return {"choice": CHOICES[decision]}
+    fields = cue_strokes(strokes, at)[0].to_dict() | ({"choice": "play"} if at.choice[0] else {})
+    return {name: value for name, value in fields.items() if value is not None}
+
+
+def foresee_strokes(at: Positions, options: Options) -> list[dict[str, Any]]:
+    """What is foreseen of each stroke on the menu, the best first: pots by their promise, then others."""
+    reader, named = _Reader(at, options, 0), _name_pots(at)
+    rows = reader.row[: len(reader.there) * STROKE_SIZE].reshape(-1, STROKE_SIZE).astype(float)
+    found = []
+    for number in np.flatnonzero(reader.there).tolist():
+        one: dict[str, Any] = {"number": number}
+        if at.of_frames and number >= len(rows) - DECISIONS:
+            found.append(one | {"choice": ("play_again", "replace")[number - len(rows)]})
+            continue
+        if rows[number, columns.F_POT] > 0:
+            one["pot"] = named[number // (SPEEDS * len(TOPS))]
+        numbers = {name: round(rows[number, c] * over, 3) for name, (c, over) in _SHOWN.items()}
+        found.append(one | numbers)
+    return sorted(found, key=_rank)
+
+
+def _name_pots(at: Positions) -> list[list[str]]:
+    """Ball and pocket of each line of the menu that is a pot; with a free ball of both kinds, the widest first."""
+    found, kinds = [], [at.as_visits()]
+    if at.free_ball[0]:
+        kinds.append(kinds[0].copy())
+        kinds[1].game[:, BALL_ON] = at.ball_on
+    for some in map(pots, kinds):
+        found += zip(-some.tolerance[0], some.ball[0].tolist(), some.pocket[0].tolist(), strict=True)
+    return [[NAMES[ball], POCKETS[pocket]] for _, ball, pocket in sorted(found) if ball >= 0]
+
+
+def _rank(one: dict[str, Any]) -> tuple[Any, ...]:
+    """Decisions, then fair pots by their promise, then other fair strokes by what they leave, then fouls."""
+    if "choice" in one:
+        return (0,)
+    return 1 + one["foul"], "pot" not in one, -one["promise"], one["next"], one["number"]
 
 
 def draw_jpeg(table: Table, positions: Floats, on_table: Bools) -> tuple[bytes, View]:
@@ -189,7 +279,6 @@ def _check_length(arguments: Fields) -> None:
 
 
 def serve(desk: Desk) -> "Server[Any]":
-    """The server of the SDK whose tools are those of a desk."""
     try:
         import anyio.to_thread
         from mcp import types

@@ -5,26 +5,17 @@ import os
 import sys
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .._lib.check import integer, refuse_what
+from .._lib.check import integer
 from .._lib.command import stop_with_reader
-from .._lib.files import read_json
 from ..players.model_options import add_model_options, options_of_words
-from ..tasks.noise import LEVELS
-from ..tasks.options import CUES
 
 if TYPE_CHECKING:
     from .server import PlayServer
     from .service import Service
 
 PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
-
-
-def _usual_file() -> Path:
-    """A person's file, unless another is named: in the user's folder for data."""
-    base = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
-    return Path(base).expanduser() / "snooker_env" / "person.json"
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
@@ -42,44 +33,37 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
         one is your opponent (default: Walter) and, if it knows frames, your adviser. May be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
-    noise = "execution errors of the agent (default: a professional's; Walter has his own)"
-    add("--noise", choices=list(LEVELS), help=noise)
+    folder = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
+    file = Path(folder).expanduser() / "snooker_env" / "person.json"
     person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
-    add("--person", type=Path, default=_usual_file(), metavar="FILE", help=person)
-    add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
+    add("--person", type=Path, default=file, metavar="FILE", help=person)
+    add("--position", type=Path, metavar="FILE", help="begin with this position (JSON)")
     add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
-    cue = "whether rails and balls are in the way of the cue (default: %(default)s)"
-    add("--cue", choices=CUES, default="real", help=cue)
     add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
 
 def service_of(args: argparse.Namespace) -> "Service":
-    """The game that the arguments ask for; ValueError or OSError if something is invalid."""
     import numpy as np
 
+    from ..planning.position import Position
     from ..players.resolver import players_of
-    from .levels import USUAL
+    from .levels import BY_NAME, USUAL
     from .person import Person
-    from .routes import position_of
     from .service import PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
-    session = Session(layout=args.layout, seed=seed, cue=args.cue, flight=args.flight)
+    session = Session(layout=args.layout, seed=seed, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = players_of(args.agent, args.trust, options_of_words(args.options))
     agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), USUAL)])
-    session.noise[:] = ["amateur", args.noise or seats.usual_noise(1, "professional")]
+    session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
     if args.position is not None:
-        read = _read(args.position)
-        if read.get("format") == "snooker-game":
-            session.load(read)
-        else:
-            session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
+        session.set_up(Position.load(args.position))
     return Service(session, seats, Person(args.person))
 
 
@@ -99,12 +83,10 @@ def _server(service: "Service", port: int | None, host: str | None = None) -> "P
     from .server import PlayServer
 
     if port is not None:
-        integer("port", port, 0, 65535)
+        return PlayServer(service, integer("port", port, 0, 65535), host)
     try:
-        return PlayServer(service, PORT if port is None else port, host)
+        return PlayServer(service, PORT, host)
     except ValueError:
-        if port is not None:
-            raise
         return PlayServer(service, 0, host)
 
 
@@ -119,16 +101,8 @@ def _invite(server: "PlayServer") -> None:
     print()
 
 
-def _read(path: Path) -> dict[str, Any]:
-    read = read_json(path, "position")
-    if not isinstance(read, dict):
-        raise refuse_what("position", str(path), "must hold a JSON object")
-    return read
-
-
 @stop_with_reader()
 def main(argv: list[str] | None = None) -> int:
-    """Serve until Ctrl-C."""
     args = _arguments(argv)
     try:
         service = service_of(args)
@@ -145,10 +119,8 @@ def main(argv: list[str] | None = None) -> int:
         print(f"Snooker is played at\n\n    {server.address}\n")
         if args.host is not None:
             _invite(server)
-        print(
-            "Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.",
-            flush=True,
-        )
+        print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.")
+        sys.stdout.flush()
         if not args.no_browser and not webbrowser.open(server.address):
             print(f"No browser was found. Open {server.address} in one.", flush=True)
         server.serve_forever(poll_interval=0.2)

@@ -1,6 +1,5 @@
-"""On which grid is a game by link played? Strokes are rounded before they are played, and places after them.
-
-All numbers of the grid are whole multiples of powers of two, so a table on it is the same on every machine, bit for bit."""
+"""On which grid is a game played? Strokes are rounded before they are played, and places after them: to whole multiples of
+powers of two, so a table on it is the same on every machine, bit for bit."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -24,8 +23,7 @@ Flags: TypeAlias = Bools | list[bool]
 STEP = 2.0**-21
 """Of places [m]: two balls in contact, each moved by half a step, overlap by less than the micrometre that is allowed."""
 SPEED, TIP, TILT, TURN = 512, 512, 1024, 2**22
-"""Steps of a stroke: of its speed a m/s, of its tip a ball's radius, of its elevation a radian, of its direction a turn. They are
-0.00009 degrees, where a professional errs by 0.04."""
+"""Steps of a stroke: of its speed a m/s, of its tip a ball's radius, of its elevation a radian, of its direction a turn."""
 LOW = (int(MIN_SPEED * SPEED) + 1, -int(FARTHEST * TIP), -int(FARTHEST * TIP), -TURN // 2, 0)
 HIGH = (int(MAX_SPEED * SPEED), int(FARTHEST * TIP), int(FARTHEST * TIP), TURN // 2 - 1, int(STEEPEST * TILT))
 """The ends of a stroke's numbers, as ``numbers_of`` lists them."""
@@ -54,8 +52,7 @@ def steps_of(places: Places | Sequence[float]) -> Ints:
 
 
 def list_moved(before: Places, after: Places, on_table: Flags, frame: Frame) -> list[int]:
-    """Balls on the table that lie at another point of the grid than they lay; without a cue ball in hand, which is placed
-    anew."""
+    """Balls on the table that lie at another point of the grid than they lay; without a cue ball in hand."""
     moved = (steps_of(before) != steps_of(after)).any(axis=1) & np.asarray(on_table)
     moved[CUE] &= not frame.in_hand
     return np.flatnonzero(moved).tolist()

@@ -20,9 +20,7 @@ LEVELS = (
     Level("Walter", "tactician_500", "club", "safe: leaves you little, and waits for your mistakes", 1921),
     Level("Rosa", "search_2000", "amateur", "bold: goes for every pot, and for the break", 2148),
     Level("Mia", "tactician_30", "professional", "quick: considers few strokes, but hits them well", 2587),
-    Level(
-        "Vera", "tactician_500", "professional", "safe: weighs pots against safeties, and seldom errs", 2693
-    ),
+    Level("Vera", "tactician_500", "professional", "safe: weighs pots and safeties, and seldom errs", 2693),
 )
 BY_NAME = {level.name: level for level in LEVELS}
 USUAL = "Walter"  # who plays against a person unless someone is named

@@ -1,9 +1,6 @@
-"""How is a whole game passed on? As text: its first table, what was asked for from there, and where balls came to rest.
-
-Behind the first table stands one large number, whose digits have the base of what the rules allow there, so nothing else can be
-written. Played again on the ``Grid``, strokes meet the same execution errors. Of a ball that a stroke moved there is the place
-modulo ``NEAR`` steps: a machine whose last bits fall otherwise takes that place, within 0.25 mm of its own. A check after each
-stroke, of all places and scores, shows larger differences."""
+"""How is a whole game passed on? As text: its first table, and one large number, whose digits have the base of what the rules
+allow there: what was asked for, and of each ball that a stroke moved the place modulo ``NEAR`` steps. A machine whose last bits
+fall otherwise takes that place, within 0.25 mm of its own; a check of all places and scores shows larger differences."""
 
 import json
 import re
@@ -18,7 +15,7 @@ from .. import __version__
 from .._lib.check import integer, refuse, refuse_what
 from .._lib.files import strict_json
 from ..advice import CueStroke
-from ..game.balls import CUE, NAMES
+from ..game.balls import CUE
 from ..game.fouls import AUTO
 from ..game.frame import Frame
 from ..players.table_report import nominations_of
@@ -110,8 +107,8 @@ def write_link(session: Session) -> str:
 
 
 def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
-    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it does not come out so here: then
-    nothing has changed. ``agreed``: nobody may have changed errors or cue on the way, or practised."""
+    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here.
+    ``agreed``: nobody may have changed errors or cue on the way, or practised."""
     first, digits = _read_link(session, link)
     with session.as_a_whole():
         session.load(first)
@@ -157,14 +154,14 @@ def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[s
     stroke = stroke_of([*numbers, digits.within(0, HIGH[4], values[4]) if tilts else 0])
     place = steps_of(asked.get("place") or [0.0, 0.0]).tolist() if frame.in_hand else []
     place = [digits.within(-BED, BED, step) * STEP for step in place] or None
-    colours = [NAMES[i] for i in nominations_of(frame)]
-    named = digits.one_of(["", *(["none"] if frame.free_ball else []), *colours], asked.get("nominate") or "")
+    open_to = [AUTO, *[DECLINED] * frame.free_ball, *nominations_of(frame)]
+    nominated = digits.one_of(open_to, asked.get("nominate"))
     setting = _setting(asked, first, frame)
     if digits.within(0, 1, int(setting != _setting({}, first, frame))):
-        open_to = list(LEVELS), (False, True), CUES
-        setting = [digits.one_of(*one) for one in zip(open_to, setting, strict=True)]
+        settings = list(LEVELS), (False, True), CUES
+        setting = [digits.one_of(*one) for one in zip(settings, setting, strict=True)]
     told = dict(zip(SETTING, setting, strict=True))
-    return {**stroke.to_dict(), **told, "place": place, "nominate": named or None}
+    return {**stroke.to_dict(), **told, "place": place, "nominate": nominated}
 
 
 def _setting(asked: dict[str, Any], first: dict[str, Any], frame: Frame) -> tuple[Any, ...]:
@@ -183,9 +180,8 @@ def _do(session: Session, asked: dict[str, Any]) -> None:
         session.noise[session.frame.striker] = noise
         if (place := asked["place"]) is not None and list(session.place(*place)) != place:
             raise refuse("place", place, "must be free for the cue ball in hand")
-        named = {None: AUTO, "none": DECLINED}
-        nominated = named[asked["nominate"]] if asked["nominate"] in named else NAMES.index(asked["nominate"])
-        session.play(CueStroke.of({name: asked[name] for name in STROKE}), nominated=nominated)
+        stroke = CueStroke.of({name: asked[name] for name in STROKE})
+        session.play(stroke, nominated=asked["nominate"])
 
 
 def _sum(positions: Places, on_table: Flags, frame: Frame) -> int:
@@ -223,9 +219,8 @@ def _read_link(session: Session, link: object) -> tuple[dict[str, Any], Digits]:
     whole, rest = raw[:-TAIL], raw[HEAD + TABLE : -TAIL]
     same = urlsafe_b64encode(raw).decode().rstrip("=") == link
     if len(whole) < HEAD + TABLE or not same or zlib.crc32(whole) != int.from_bytes(raw[-TAIL:], "big"):
-        raise refuse_what(
-            "link", f"{len(link)} characters", "must be whole: this one is damaged, copy it again"
-        )
+        allowed = "must be whole: this one is damaged, copy it again"
+        raise refuse_what("link", f"{len(link)} characters", allowed)
     key = int.from_bytes(whole[7:HEAD], "big")
     own, length = _head_of(session, key), int.from_bytes(whole[HEAD : HEAD + TABLE], "big")
     if whole[:4] != own[:4]:

@@ -1,13 +1,11 @@
-"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads.
-
-The file is read before each use and written whole, so two servers may share it. One that is not sound is an error, and is
-never written over."""
+"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads. It is read before each
+use and written whole, so two servers may share it. One that is not sound is an error, and never written over."""
 
 import json
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
@@ -18,7 +16,6 @@ from .session import Session
 EMPTY: dict[str, Any] = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
 MOST_STROKES, MOST_NAME = 600, 40
 RATED_WITH = "amateur"  # the person's errors in frames that are rated
-Kept: TypeAlias = tuple[dict[str, Any], list[dict[str, Any]]]  # a frame, and the person's strokes in it
 PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the coach together
 
 
@@ -69,16 +66,15 @@ class Person:
         return [Recorded.from_dict(one) for one in same]
 
 
-def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Kept:
-    """A frame that is over, the person's side first, and the person's strokes in it, with the pots that they tell. Rated are
-    fair frames against a level; ``same``: whether nobody else sat there before its end."""
-    sides, level = (seat, 1 - seat), BY_NAME.get(opponent)
-    played = [(session.acts[k].player, session.acts[k].asked) for k in session.strokes]
-    usual = (session.game, session.options.layout, session.cue) == ("snooker", "break_off", "real")
-    usual = usual and all(one["cue"] == "real" and not one["practice"] for _, one in played)
-    own = level is not None and all(
-        one["noise"] == (RATED_WITH if player == seat else level.noise) for player, one in played
-    )
+def tell_frame(
+    session: Session, seat: int, opponent: str, *, same: bool
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """A frame that is over, the person's side first, and the person's strokes in it. ``same``: nobody else sat there before."""
+    sides, played = (seat, 1 - seat), [session.acts[k] for k in session.strokes]
+    fair = same and (session.game, session.options.layout) == ("snooker", "break_off") and opponent in BY_NAME
+    for act in played if fair else ():  # the strokes of a rated frame
+        noise = RATED_WITH if act.player == seat else BY_NAME[opponent].noise
+        fair &= (act.asked["cue"], act.asked["practice"], act.asked["noise"]) == ("real", False, noise)
     frame = {
         "date": date.today().isoformat(),
         "opponent": opponent[:MOST_NAME],
@@ -88,10 +84,10 @@ def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Kep
         "breaks": session.breaks[seat],
         "hints": session.hints[seat],
         "undone": session.undone,
-        "rated": same and usual and own and bool(played) and not session.hints[seat] and not session.undone,
+        "rated": fair and bool(played) and not session.hints[seat] and not session.undone,
     }
-    strokes = [session.acts[k].played for k in session.strokes]
-    mine = strokes_of(strokes, player=seat) if any(player == seat for player, _ in played) else []
+    any_own = any(act.player == seat for act in played)
+    mine = strokes_of([act.played for act in played], player=seat) if any_own else []
     return frame, [one.to_dict() for one in mine]
 
 

@@ -1,6 +1,5 @@
 """What does the page show? The game as JSON types, and as text."""
 
-from math import radians
 from typing import Any
 
 from ..advice import POCKET_WORDS
@@ -12,7 +11,7 @@ from ..planning.stroke_columns import FARTHEST
 from ..players.table_report import report_game, report_turn, say_score, say_table
 from ..render.scene import scene_data
 from ..replays.encode import encode_stroke
-from ..replays.referee_words import ERRORS, errors_words, sentence
+from ..replays.referee_words import ERRORS, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
 from .levels import LEVELS
@@ -21,13 +20,12 @@ from .session import Act
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-STEEP = radians(5.0)  # elevation above which a raised cue is worth saying
+IN_SESSION = ("begun", "practice", "game", "cue", "breaks", "hints", "undone")
 
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    with service.reading() as session:
-        rules = session.options_with("none").rules
+    rules = service.session.options_with("none").rules
     assert isinstance(rules.actions, Actions)
     limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
     pockets = zip(POCKETS, POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
@@ -49,41 +47,33 @@ def scene(service: Service) -> dict[str, Any]:
     }
 
 
-_DECIDED = {
-    "play": "played on",
-    "play_again": "asked the opponent to play again",
-    "replace": "had the balls put back",
-    "anywhere": "took the cue ball in hand",
-}
+_SAID = {
+    "play": "{} played on.",
+    "play_again": "{} asked the opponent to play again.",
+    "replace": "{} had the balls put back.",
+    "anywhere": "{} took the cue ball in hand.",
+    "concede": "{} conceded the frame.",
+    "claim": "{} claimed the frame.",
+    "set_up": "Position set up.",
+    "load": "Game loaded.",
+    "new": "New frame.",
+}  # of an act that is no stroke, or of the decision after a foul
 
 
-def last_words(act: Act, labels: tuple[str, str], before: Act | None = None) -> str:
-    """An act in a sentence; ``before``: the act before it, whose foul a choice answers."""
+def last_words(act: Act, labels: tuple[str, str]) -> str:
+    """An act in a sentence, after the foul that it answers."""
     who = "" if act.player is None else labels[act.player]
-    if act.what == "choice":
-        said = f"{who} {_DECIDED[act.detail]}."
-        return said if before is None or before.played is None else f"{last_words(before, labels)} {said}"
     if act.played is not None:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
-        said = f"{who}{nominated}: {sentence(act.played, labels)}"
-        if act.room is None or not (act.room.moved or act.room.elevation > STEEP) or not act.room.words:
-            return said
-        return f"{said} {act.room.words[:1].upper()}{act.room.words[1:]}."
-    return {
-        "concede": f"{who} conceded the frame.",
-        "claim": f"{who} claimed the frame.",
-        "set_up": "Position set up.",
-        "load": "Game loaded.",
-        "new": "New frame.",
-    }[act.what]
+        return f"{who}{nominated}: {sentence(act.played, labels)}"
+    foul = "" if act.answers is None or act.answers.played is None else last_words(act.answers, labels)
+    return f"{foul} {_SAID[act.detail or act.what].format(who)}".strip()
 
 
-def table_after(
-    act: Act, labels: tuple[str, str], win_chance: float | None, before: Act | None = None
-) -> dict[str, Any]:
-    """The table and the scoreboard after an act; ``win_chance``: of seat 0; ``before``: the act before it."""
+def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
+    """The table and the scoreboard after an act; ``win_chance``: of seat 0."""
     frame, table = Frame.from_dict(act.state["frame"]), (act.state["positions"], act.state["on_table"])
-    own = {"win_chance": win_chance, "last": last_words(act, labels, before)}
+    own = {"win_chance": win_chance, "last": last_words(act, labels)}
     return report_game(frame, *table, labels) | own
 
 
@@ -92,33 +82,31 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.labels
     played = acts[k].played
     assert played is not None
-    before, both = acts[k - 2] if k > 1 else None, acts[k - 1 : k + 1]
-    chances = service.win_chances(both)
-    tables = [table_after(act, labels, chance, before) for act, chance in zip(both, chances, strict=True)]
+    both = acts[k - 1 : k + 1]
+    after = zip(both, service.win_chances(both), strict=True)
+    tables = [table_after(act, labels, chance) for act, chance in after]
     return encode_stroke(played, labels) | {"tables": tables}
 
 
 def report(service: Service) -> dict[str, Any]:
     session, seats, labels = service.session, service.seats, service.labels
-    frame, act = session.frame, session.acts[session.at - 1]
-    before = session.acts[session.at - 2] if session.at > 1 else None
-    state = table_after(act, labels, service.win_chances([act])[0], before)
-    host = service.me == PERSON
+    frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
+    state = table_after(act, labels, service.win_chances([act])[0])
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    of_session = ["begun", "practice", "game", "best_of", "frames", "match_over", "cue"]
-    of_session += ["breaks", "hints", "undone"]
-    state |= turn | {name: getattr(session, name) for name in of_session}
-    state |= {name: getattr(service, name) for name in ("revision", "thinking", "trouble")}
+    state |= turn | {name: getattr(session, name) for name in IN_SESSION}
     by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
     visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
     state |= {
+        "revision": service.revision,
+        "thinking": service.thinking,
+        "trouble": service.trouble,
         "players": seats.seen_by(service.me),
         "labels": list(labels),
         "advisers": seats.advisers(session.practice),
         "level": seats.level(session),
         "noise": list(session.noise),
-        "choice_wins": service.choice_chances(session),
+        "choice_wins": service.choice_chances(),
         "paused": host and service.paused and service.agent_to_play(),
         "strokes": len(session.strokes),
         "undo": host and session.at > 1 and not by_link,
@@ -129,7 +117,7 @@ def report(service: Service) -> dict[str, Any]:
         waits = "is waiting: press Continue." if host else "is waiting."
         waits = waits if service.paused else "is thinking."
         state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
-    if host and service.friend_to_play:
+    if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
         state["words"] = "It is your friend's turn: send the link."
     elif by_link and act.what == "new":
         state["last"] = "New frame. Play first, then send your friend the link."
@@ -138,29 +126,5 @@ def report(service: Service) -> dict[str, Any]:
         state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
     if state["phase"] == "over":
         state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
-    state["luck"] = _say_luck(service) if state["phase"] == "over" else ""
-    said = [state["last"], state["words"], say_score(state, labels), *_say_chance(state)]
-    said += [state["luck"]] * bool(state["luck"])
+    said = [state["last"], state["words"], say_score(state, labels)]
     return state | {"text": say_table(state, lines, said)}
-
-
-def _say_chance(state: dict[str, Any]) -> list[str]:
-    """How likely both are to win; nothing where nobody says it, or the frame is over."""
-    if (chance := state["win_chance"]) is None or state["phase"] == "over":
-        return []
-    sure = chance in (0.0, 1.0)  # by the rules; as the page shows it, rounding makes nothing certain
-    share = round(100 * chance) if sure else min(99, max(1, round(100 * chance)))
-    one, other = state["labels"]
-    return [f"Chance to win, both {errors_words(state['level'])}: {one} {share} %, {other} {100 - share} %."]
-
-
-def _say_luck(service: Service) -> str:
-    """How lucky both were in the frame, in their chances to win; "" where nobody errs."""
-    lucks, acts = [0.0, 0.0], service.session.acts
-    for k, luck in zip(service.session.strokes, service.session.luck, strict=True):
-        lucks[acts[k].player or 0] += luck
-    shares = [round(100 * luck) for luck in lucks]
-    one, other = (
-        f"{name} {share:{'+' * bool(share)}d} %" for name, share in zip(service.labels, shares, strict=True)
-    )
-    return f"Luck: {one}, {other}." if any(lucks) else ""

@@ -1,6 +1,5 @@
-"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
-
-A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field."""
+"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route. A handler takes the fields of
+a request and returns JSON types; a ValueError names an invalid field."""
 
 import re
 from collections.abc import Callable
@@ -14,6 +13,7 @@ from .._lib.check import choice, integer, number, refuse, truth
 from .._lib.types import CueKind
 from ..advice import CueStroke, Suggestion, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
+from ..advice.room import room_for
 from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES
@@ -33,20 +33,18 @@ from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report
 from .service import LINKED, Reviewing, Service, StaleError
 from .session import Session, read_levels
 
-Handler = Callable[[Service, dict[str, Any]], Any]
-
 
 class Route(NamedTuple):
     """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
 
-    handler: Handler
+    handler: Callable[[Service, dict[str, Any]], Any]
     fields: tuple[str, ...] = ()
     friend: bool = False  # whether not the host alone may post it, but a friend, too
 
 
 def _state(service: Service, fields: dict[str, Any]) -> None:
     if "after" in fields:
-        after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 60.0)
+        after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 25.0)
         service.wait(integer("after", after, 0, MOST), seconds)
 
 
@@ -64,9 +62,7 @@ def take_stroke(session: Session, fields: dict[str, Any]) -> CueStroke:
 
 
 def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    strikes = any(name in fields for name in STROKE)
-    if not strikes and "choice" not in fields:
-        raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
+    strikes = "choice" not in fields or any(name in fields for name in STROKE)
     nominated = read_colour("nominate", fields["nominate"]) if "nominate" in fields else AUTO
     struck = None
     with service.acting(_revision(fields)) as session:
@@ -90,29 +86,16 @@ def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
-    check, scores = truth("check", fields.get("check", False)), fields.get("scores", [0, 0])
+    check = truth("check", fields.pop("check", False))
     try:
-        if not isinstance(scores, list) or len(scores) != 2:
-            raise refuse("scores", scores, "must be two integers")
-        one, other = (integer(f"scores[{k}]", score, 0, MOST) for k, score in enumerate(scores))
-        striker = integer("striker", fields.get("striker", 0), 0, 1)
-        free = truth("free_ball", fields.get("free_ball", False))
-        position = position_of(fields.get("position"))
+        position = Position.from_dict(fields.pop("position", None))  # type: ignore[arg-type]
         with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
-            session.set_up(position, scores=(one, other), striker=striker, free_ball=free)
+            session.set_up(position, **fields)
     except ValueError as error:
         if not check:
             raise
         return {"sound": False, "error": parts_of(error)}
     return {"sound": True, "error": None} if check else None
-
-
-def position_of(fields: Any) -> Position:
-    """The ``Position`` of JSON types; ValueError names the ball or the field that is invalid."""
-    position = Position.from_dict(fields)
-    if position.over:
-        raise refuse("over", True, "must be false: there is no stroke to play")
-    return position
 
 
 def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
@@ -125,19 +108,12 @@ def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bo
 
 
 def _new(service: Service, fields: dict[str, Any]) -> None:
-    by_link, follows = (truth(name, fields.pop(name, False)) for name in ("by_link", "next"))
+    by_link = truth("by_link", fields.pop("by_link", False))
     if not isinstance(fields.get("layout", ""), str):
         raise refuse("layout", fields["layout"], "must be the name of a layout")
-    if by_link and (follows or fields.get("best_of", 1) != 1):
-        raise refuse("by_link", True, "must be left out in a match: a link holds one frame")
     with service.acting(anew=True) as session:
         noise = list(session.noise)
-        if follows:
-            for name in set(fields) - {"seed"}:
-                raise refuse(name, fields[name], "must be left out with next: the match goes on as it is")
-            session.next_frame(**fields)
-        else:
-            session.new(**fields)
+        session.new(**fields)
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
             service.seats.share(0, noise)
@@ -146,22 +122,12 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
-    noise = read_levels("noise", fields["noise"]) if "noise" in fields else None
-    practice = truth("practice", fields["practice"]) if "practice" in fields else None
-    cue = choice("cue", fields["cue"], CUES) if "cue" in fields else None
     with service.acting(any_turn=True, anew="players" in fields) as session:
-        if "players" in fields:
-            seats, own = service.seats, service.seats.errors_of_host(session)
-            agents = [seats.is_agent(k) for k in (0, 1)]
-            seats.sit(fields["players"])
-            service.vacant = False
-            for k in (0, 1):  # a person does not take over the errors of an agent
-                mine = own if agents[k] and not seats.is_agent(k) else session.noise[k]
-                session.noise[k] = seats.usual_noise(k, mine)
-        if noise is not None:
-            session.noise[:] = noise
-        session.practice = session.practice if practice is None else practice
-        session.cue = cast(CueKind, cue) or session.cue
+        session.noise[:] = read_levels("noise", fields.get("noise", session.noise))
+        session.practice = truth("practice", fields.get("practice", session.practice))
+        session.cue = cast(CueKind, choice("cue", fields.get("cue", session.cue), CUES))
+        if "players" in fields:  # last, since seats are not given back after an error
+            service.seats.sit(fields["players"])
 
 
 def _concede(service: Service, fields: dict[str, Any]) -> None:
@@ -169,23 +135,18 @@ def _concede(service: Service, fields: dict[str, Any]) -> None:
         session.concede()
 
 
-def _pass_on(service: Service, fields: dict[str, Any], form: Callable[[Session], Any]) -> Any:
+def _link(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
-        return form(session)
+        return {"link": write_link(session)}
 
 
 def _load(service: Service, fields: dict[str, Any]) -> None:
     seat, by_link = fields.get("seat"), "seat" in fields
     if seat is not None:
         integer("seat", seat, 0, 1)
-    if by_link and "link" not in fields:
-        raise refuse("seat", seat, "must be left out without a link")
     with service.acting(pause=True, anew=True) as session:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
-        if "link" not in fields:
-            session.load(fields.get("saved"))
-        else:
-            open_link(session, fields["link"], agreed=by_link)
+        open_link(session, fields.get("link"), agreed=by_link)
         if not by_link:
             service.seats.share_no_more()
             return
@@ -202,29 +163,26 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
         errors = _errors(fields, 200, seats.level(session))
         session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        answer: dict[str, Any] = {"choice": None, "choices": []}
+        decided = None
         if session.frame.phase == "choice":
-            answer["choice"] = CHOICES[int(seats.decide(agent, session).decision[0])]
-            wins, choices = service.choice_chances(session, errors["noise"]), session.frame.choices
-            answer["choices"] = [{"choice": x, "win": win} for x, win in zip(choices, wins, strict=True)]
+            decided = CHOICES[int(seats.decide(agent, session).decision[0])]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
-        answer |= {"agent": agent, "order": advice.order, "noise": advice.noise}
-        answer["suggestions"] = [_draw_suggestion(session, one) for one in advice]
+        told = {"agent": agent, "order": advice.order, "noise": advice.noise, "choice": decided}
+        told["suggestions"] = [_draw_suggestion(session, one) for one in advice]
     with service.reading() as now:
         seat = session.frame.striker
         shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
         if shown and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
-    return answer
+    return told
 
 
 def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
-    """A suggestion in words, data and paths."""
     names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
     names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-    return one.to_dict() | names | _draw(session, one.stroke)
+    return one.to_dict() | names | _paths(_play_exactly(session, one.stroke))
 
 
 def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
@@ -239,16 +197,11 @@ def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
 
 
 def _hits(shot: Shot) -> Any:
-    """The events in which the cue ball met a ball."""
     return shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & (shot.events["i"] == CUE)]
 
 
-def _draw(session: Session, stroke: CueStroke) -> dict[str, Any]:
-    return _paths(_play_exactly(session, stroke))
-
-
 def _paths(shot: Shot) -> dict[str, Any]:
-    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
+    """Paths of a shot's balls [m]; the ball struck first, the pots and the duration."""
     hits, lines = _hits(shot), trace_paths(shot, range(len(shot.positions)), step=0.04)
     return {
         "paths": {str(ball): np.round(points, 4).tolist() for ball, (points, _) in lines.items()},
@@ -264,14 +217,14 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         stroke = take_stroke(session, fields)
         stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
         places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
-        return _draw(session, stroke) | vars(stops) | places
+        return _paths(_play_exactly(session, stroke)) | vars(stops) | places
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading(_revision(fields)) as session:  # at once: it does not wait for long questions
         twin = session.twin()
     stroke = take_stroke(twin, fields)
-    room = twin.room(stroke).to_dict()
+    room = room_for(stroke.numbers(), twin.as_visit(), twin.options.rules).to_dict()
     if twin.frame.phase != "stroke":
         return room
     shot, first, heads = _play_exactly(twin, stroke), None, None
@@ -323,7 +276,6 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
 
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    """Begin a review of what was played, or stop the one that is being made."""
     with service.reading() as session:
         if service.reviewing:
             service.reviewing.running = False
@@ -349,8 +301,8 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     assert act.played is not None
     with service.asking() as session:
         session.cue = act.played.cue_kind
-        session.go_to(reviewing.acts, k)
-        played, best = _paths(act.played.shot), _draw(session, one.best.stroke)
+        session.go_to(k, reviewing.acts)
+        played, best = _paths(act.played.shot), _paths(_play_exactly(session, one.best.stroke))
         best["paths"] = {k: best["paths"][k] for k in map(str, (CUE, one.best.ball)) if k in best["paths"]}
         return {"played": played, "best": best} | {"table": table_after(before, service.labels, chance)}
 
@@ -358,7 +310,7 @@ def _reviewed(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _again(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
         reviewing = service.own_review()
-        session.go_to(reviewing.acts, reviewing.act_of(fields.get("stroke"))[0])
+        session.go_to(reviewing.act_of(fields.get("stroke"))[0], reviewing.acts)
         session.undone += 1
 
 
@@ -381,15 +333,12 @@ POST: dict[str, Route] = {
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
     "undo": Route(partial(_move, move=Session.undo)),
     "redo": Route(partial(_move, move=Session.redo)),
-    "new": Route(_new, ("layout", "seed", "breaker", "game", "best_of", "next", "by_link")),
+    "new": Route(_new, ("layout", "seed", "breaker", "game", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
-    "sit": Route(lambda service, fields: service.sit_down(), friend=True),
-    # both hold the random stream: the host's alone
-    "link": Route(partial(_pass_on, form=lambda session: {"link": write_link(session)})),
-    "save": Route(partial(_pass_on, form=Session.save)),
-    "load": Route(_load, ("saved", "link", "seat")),
+    "link": Route(_link),  # it holds the random stream: the host's alone
+    "load": Route(_load, ("link", "seat")),
     "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
     "reviewed": Route(_reviewed, ("stroke",)),
     "again": Route(_again, ("stroke",)),
@@ -411,7 +360,7 @@ def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
             some = f"must be one of {list(route.fields)}"
             raise refuse("field", name, some if route.fields else "must be left out: there are no fields")
     try:
-        reply = route.handler(service, fields)
+        reply = route.handler(service, dict(fields))
     except StaleError:
         return {"stale": True}
     if reply is not None:

@@ -1,9 +1,6 @@
-"""How does the game answer a browser or a program? A small HTTP server, for those who have its token.
-
-Every request is checked before anything is done: the token in its path, in constant time, and what its holder may do;
-``Host``, and the host of a target that has one, so that no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so
-that no other page can send requests; method, path, length, type and form of the body. Connections are bounded in number
-and time. Every error is answered by one JSON object."""
+"""How does the game answer a browser or a program? A small HTTP server, for those who have its token. Every request is checked
+before anything is done: ``Host``, so that no other name leads here (DNS rebinding); ``Origin`` and ``Sec-Fetch-Site``, so that no
+other page can send requests; the token, in constant time; method, path and body. Connections are bounded in number and time."""
 
 import errno
 import hmac
@@ -30,11 +27,10 @@ from ..players.requests import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
 from .routes import GET, POST, answer, parts_of
-from .service import FRIEND, PERSON, WATCHER, BusyError, Service
+from .service import ASKING, FRIEND, PERSON, WATCHER, BusyError, Service
 
-PARTS = ("aim", "ask", "door", "drill", "first", "friend", "level", "parts", "person", "review")
-PARTS += ("room", "setup", "share", "sound", "stats", "tour")
-SCRIPTS = ("table.js", "play.js", *(f"play_{part}.js" for part in PARTS))
+WEB = Path(__file__).with_name("web")
+SCRIPTS = ("table.js", *sorted(path.name for path in WEB.glob("*.js")))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
@@ -66,9 +62,8 @@ class RefusedError(Exception):
         self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
     ):
         super().__init__(message)
-        self.status: int = status
+        self.status, self.headers = status, headers
         self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
-        self.headers: dict[str, str] = headers
 
 
 class PlayHandler(BaseHTTPRequestHandler):
@@ -77,9 +72,8 @@ class PlayHandler(BaseHTTPRequestHandler):
     protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "snooker_env", ""
     timeout = IDLE
-    disable_nagle_algorithm = (
-        True  # an answer is two writes: the second must not wait for the first to be acknowledged
-    )
+    # an answer is two writes: the second must not wait for the first to be acknowledged
+    disable_nagle_algorithm = True
 
     def log_message(self, format: str, *args: object) -> None:
         """Log nothing: a path holds the token."""
@@ -118,8 +112,8 @@ class PlayHandler(BaseHTTPRequestHandler):
                 return
             route = (GET if self.command == "GET" else POST)[name[4:]]
             fields = query if self.command == "GET" else self._body()
-            with self.server.service.asked_by(self.who) as game:
-                reply = answer(game, route, fields)
+            ASKING.set(self.who)
+            reply = answer(self.server.service, route, fields)
             if isinstance(reply, str):
                 more = {"Content-Disposition": 'attachment; filename="replay.html"'}
                 self._send(200, reply.encode(), "text/html", more)
@@ -127,6 +121,7 @@ class PlayHandler(BaseHTTPRequestHandler):
                 text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
                 self._send(200, text.encode(), "application/json")
         except RefusedError as refused:
+            self.close_connection = True  # the rest of the request may not have been read
             self._refuse(refused)
         except ValueError as error:
             self._refuse(RefusedError(422, **parts_of(error)))
@@ -141,43 +136,41 @@ class PlayHandler(BaseHTTPRequestHandler):
         try:
             parts = urlsplit(self.path)
         except ValueError:
-            raise self._last(400, "the target of a request must be an address") from None
+            raise RefusedError(400, "the target of a request must be an address") from None
         host = head.get_all("Host") or []
         asked = [*host, parts.netloc] if parts.scheme or parts.netloc else host
         known = self._hosts()
         if len(host) != 1 or not known.issuperset(map(str.lower, asked)):
-            raise self._last(403, "Host must be " + " or ".join(sorted(known)))
+            raise RefusedError(403, "Host must be " + " or ".join(sorted(known)))
         for field in ("Origin", "Sec-Fetch-Site", "Content-Length"):
             if len(head.get_all(field) or []) > 1:
-                raise self._last(400, "must be given once", field)
+                raise RefusedError(400, "must be given once", field)
         origin = head.get("Origin")
         if origin is not None and origin.lower() not in {f"http://{name}" for name in known}:
-            raise self._last(403, "Origin must be this server's own")
+            raise RefusedError(403, "Origin must be this server's own")
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
-            raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
+            raise RefusedError(403, "Sec-Fetch-Site must be same-origin, or none")
         token, _, name = parts.path.removeprefix("/").partition("/")
-        name = re.sub(
-            "^/+(?=api/)", "", name
-        )  # clients append "/api/state" to the address, which ends with "/"
+        name = re.sub("^/+(?=api/)", "", name)  # "/api/state" may be appended to the address, which ends so
         self.who = self.server.whose(token if parts.path.startswith("/") else "")
         if not self.who:
-            raise self._last(403, "the address must hold this server's token: open the one that it printed")
+            raise RefusedError(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
         if self.command not in ("GET", "POST"):
-            raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
+            raise RefusedError(405, "the method must be GET or POST", Allow="GET, POST")
         known = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
         if name not in known[self.command]:
             other = next((method for method, names in known.items() if name in names), None)
             if other is None:
-                raise self._last(404, "there is nothing of that name")
-            raise self._last(405, f"the method must be {other}", Allow=other)
+                raise RefusedError(404, "there is nothing of that name")
+            raise RefusedError(405, f"the method must be {other}", Allow=other)
         friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
         if self.command == "POST" and self.who != PERSON and not friendly:
-            raise self._last(403, "the host alone may do this")
+            raise RefusedError(403, "the host alone may do this")
         if "Transfer-Encoding" in head:
-            raise self._last(411, "a body must come with its Content-Length")
+            raise RefusedError(411, "a body must come with its Content-Length")
         if self.command == "GET" and head.get("Content-Length", "0") != "0":
-            raise self._last(400, "GET must have no body")
+            raise RefusedError(400, "GET must have no body")
         return name, self._query(parts.query)
 
     def _hosts(self) -> set[str]:
@@ -191,7 +184,7 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _query(self, text: str) -> dict[str, Any]:
         pairs = parse_qsl(text, keep_blank_values=True)
         if text and self.command == "POST":
-            raise self._last(400, "POST must have its fields in its body, not in its address")
+            raise RefusedError(400, "POST must have its fields in its body, not in its address")
         fields: dict[str, Any] = {}
         for name, value in pairs:
             if name in fields:
@@ -207,32 +200,25 @@ class PlayHandler(BaseHTTPRequestHandler):
             self.close_connection = self.close_connection or not length
             return {}
         if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
-            raise self._last(411, "must be one number of bytes", "Content-Length", ", ".join(length))
+            raise RefusedError(411, "must be one number of bytes", "Content-Length", ", ".join(length))
         if int(length[0]) > MOST_BODY:
-            raise self._last(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length[0]))
+            raise RefusedError(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length[0]))
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         if kind != "application/json":
-            raise self._last(415, "must be application/json", "Content-Type", kind)
+            raise RefusedError(415, "must be application/json", "Content-Type", kind)
         self.server.waiting[self.connection] = True, monotonic()
         raw = self.rfile.read(int(length[0]))
         self.server.waiting.pop(self.connection, None)
         if len(raw) < int(length[0]):
-            raise self._last(400, "the body ended before its Content-Length")
+            raise RefusedError(400, "the body ended before its Content-Length")
         try:
             return read_object(raw)
         except ValueError as error:
             raise RefusedError(400, str(error)) from None
 
-    def _last(
-        self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
-    ) -> RefusedError:
-        """A refusal that closes the connection, because the rest of the request may not have been read."""
-        self.close_connection = True
-        return RefusedError(status, message, field, value, **headers)
-
     def _file(self, name):
-        path = Path(__file__).with_name("web") / (name or "play.html")
-        text = table_js(player=False) if name == "table.js" else path.read_text("utf-8")
+        own = name or "play.html"
+        text = table_js(player=False) if own == "table.js" else (WEB / own).read_text("utf-8")
         self._send(200, text.encode(), f"{FILES[name]}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:
@@ -325,7 +311,6 @@ class PlayServer(ThreadingHTTPServer):
         return False
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection, then free its place."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -340,8 +325,7 @@ class PlayServer(ThreadingHTTPServer):
 
 
 def _invite(who: str, addresses: list[str]) -> dict[str, Any]:
-    """What brings another device to the table: ``who`` it then is, the ``addresses``, and the QR code of the first one, as the
-    source of an image (``qr``) and for a terminal, white on black (``drawn``; without segno how to install it)."""
+    """Addresses for another device, the first one as a QR code: an image's source, and for a terminal, white on black."""
     try:
         import segno
     except ImportError:

@@ -1,7 +1,5 @@
-"""How do persons, programs and agents share one game? Behind one lock; agents think on copies of it.
-
-A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. An agent's stroke is dropped if the game has changed in the meantime."""
+"""How do persons, programs and agents share one game? Behind one lock, with a revision that grows with every change. Agents think
+on copies of it; their strokes are dropped if the game has changed in the meantime."""
 
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,7 +32,8 @@ from .session import DECLINED, Act, Session
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
 LINKED = "friend_by_link"  # who plays elsewhere, from the link of the game
-_ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
+ASKING: ContextVar[str] = ContextVar("who asks", default=PERSON)
+"""Who makes the request that this thread answers: the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER``."""
 OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # agents that can always be chosen
 
 
@@ -65,9 +64,8 @@ class Seats:
         return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
-        """With whose errors the chance to win and advice are counted, for both players alike: the largest of the persons'
-        who play, else of the agents'. A person without errors counts as an amateur, who errs by hand, and nobody as
-        better than a professional, for whom the tactician has learned."""
+        """The errors of both in advice and the chance to win: the largest of the persons' who play, else of the agents'. A
+        person without errors counts as an amateur, and nobody as better than a professional: so learned the tactician."""
         seats = range(1 if session.practice else 2)
         people = [seat for seat in seats if not self.is_agent(seat)]
         errors = [LEVELS[session.noise[seat]] for seat in people or seats]
@@ -78,14 +76,6 @@ class Seats:
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
-
-    def usual_noise(self, seat: int, otherwise: NoiseName) -> NoiseName:
-        """The errors of the level on this seat; of anybody else ``otherwise``."""
-        return BY_NAME[self.who[seat]].noise if self.who[seat] in BY_NAME else otherwise
-
-    def errors_of_host(self, session: Session) -> NoiseName:
-        """The errors of the person at the host's page; if none sits there, an amateur's."""
-        return session.noise[self.who.index(PERSON)] if PERSON in self.who else "amateur"
 
     def is_agent(self, seat: int) -> bool:
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
@@ -165,9 +155,6 @@ class Reviewing:
         self.running = False
 
 
-LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
-
-
 class BusyError(RuntimeError):
     """Too many questions are being computed; the client should try again later."""
 
@@ -192,7 +179,6 @@ class Service:
         self.paused: bool = False  # whether an agent waits for ``go_on``
         self.trouble: str = ""  # why the last agent did not play
         self.invites: list[dict[str, Any]] = []  # what the host may pass on, if others can come to the table
-        self.vacant: bool = True  # whether a friend may sit down without having been chosen
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False
@@ -208,17 +194,7 @@ class Service:
 
     @property
     def me(self) -> str:
-        """Who asks: see ``asked_by``."""
-        return _ASKING.get()
-
-    @contextmanager
-    def asked_by(self, me: str) -> Iterator["Service"]:
-        """In this context the ``PERSON`` (the host), the ``FRIEND`` or a ``WATCHER`` asks."""
-        before = _ASKING.set(me)
-        try:
-            yield self
-        finally:
-            _ASKING.reset(before)
+        return ASKING.get()
 
     @property
     def labels(self) -> tuple[str, str]:
@@ -226,27 +202,10 @@ class Service:
         alone = self.session.practice and self.seats.who[0] == self.me
         return "You" if alone else self.seats.label(0, self.me), self.seats.label(1, self.me)
 
-    def sit_down(self) -> None:
-        """Seat the friend as the second player, unless somebody has played or the host has chosen who sits there."""
-        if FRIEND in self.seats.who:
-            return
-        with self.acting(any_turn=True) as session:
-            if FRIEND not in self.seats.names:
-                raise refuse("seat", 2, "must be open to friends: start the game with --host")
-            if not self.vacant or session.strokes or session.practice:
-                allowed = "must be free: ask your host to choose you as the opponent, under New game"
-                raise refuse("seat", 2, allowed)
-            self.seats.who[1], session.noise[1] = FRIEND, self.seats.errors_of_host(session)
-
     def check_turn(self) -> None:
-        """ValueError unless whoever asks is to play."""
-        striker = self.session.frame.striker
-        if self.agent_to_play():
-            raise refuse("turn", self.labels[striker], "must be a person's: it is an agent's turn")
-        if self.friend_to_play:
-            raise refuse("turn", "Friend", "must be yours: send the link of the game")
-        if self.seats.who[striker] != self.me and self.session.frame.phase != "over":
-            raise refuse("turn", self.labels[striker], "must be yours: it is the other player's turn")
+        frame = self.session.frame
+        if self.seats.who[frame.striker] != self.me and frame.phase != "over":
+            raise refuse("turn", self.labels[frame.striker], "must be yours: the other player is to play")
 
     @contextmanager
     def reading(self, revision: int | None = None) -> Iterator[Session]:
@@ -260,8 +219,8 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it: after an exception it is as it was before. ``pause``: agents then wait; ``any_turn``:
-        also in an agent's turn; ``anew``: another game begins."""
+        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: also in an agent's turn; ``anew``:
+        another game begins."""
         with self.reading(revision) as session:
             if not (any_turn or anew):
                 self.check_turn()
@@ -286,24 +245,25 @@ class Service:
         finally:
             self._asking.release()
 
-    def judge(self, noise: NoiseName | None = None) -> ChanceJudge | None:
-        """Estimates chances to win with these errors, by default those of ``Seats.level``; None in practice."""
+    def judge(self) -> ChanceJudge | None:
+        """Estimates chances to win with the errors of ``Seats.level``; None in practice."""
         if self.session.practice:
             return None
-        options = self.session.options_with(noise or self.seats.level(self.session))
+        options = self.session.options_with(self.seats.level(self.session))
         if self._judge[0] is not options:
             self._judge = options, player("tactician").at(options)
         return self._judge[1]
 
-    def win_chances(self, acts: Sequence[Act], noise: NoiseName | None = None) -> list[float] | list[None]:
-        """How likely seat 0 was to win after each of some acts; None for nobody says it. ``noise``: see ``judge``."""
-        if (judge := self.judge(noise)) is None or not acts:
+    def win_chances(self, acts: Sequence[Act]) -> list[float] | list[None]:
+        """How likely seat 0 was to win after each of some acts; None in practice."""
+        if (judge := self.judge()) is None or not acts:
             return [None] * len(acts)
         return win_chances(judge, [act.standing for act in acts])
 
-    def choice_chances(self, session: Session, noise: NoiseName | None = None) -> list[float | None]:
-        """How likely the striker wins after each choice that it has after a foul; as ``win_chances``."""
-        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices], noise)
+    def choice_chances(self) -> list[float | None]:
+        """How likely the striker wins after each choice that it has after a foul; None in practice."""
+        session = self.session
+        chances = self.win_chances([session.twin().choose(what) for what in session.frame.choices])
         return [one if one is None or session.frame.striker == 0 else 1.0 - one for one in chances]
 
     def own_file(self) -> Person:
@@ -318,7 +278,7 @@ class Service:
 
     def wait(self, revision: int, seconds: float) -> None:
         """Return when the revision has changed, or after that time."""
-        until = monotonic() + min(seconds, LONGEST_WAIT)
+        until = monotonic() + seconds
         with self._changed:
             while self.revision == revision and not self._closed and (left := until - monotonic()) > 0:
                 self._changed.wait(left)
@@ -333,12 +293,6 @@ class Service:
     def agent_to_play(self) -> bool:
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
-
-    @property
-    def friend_to_play(self) -> bool:
-        """Whether it is the turn of a friend by link."""
-        frame = self.session.frame
-        return frame.phase != "over" and self.seats.who[frame.striker] == LINKED
 
     @property
     def thinking(self) -> bool:
@@ -406,21 +360,14 @@ class Service:
                 elif frame.phase == "choice" and what != "play" and what in frame.choices:
                     session.choose(what)
                 else:
-                    self._play(decided)
+                    if frame.phase == "choice":
+                        session.choose("play")
+                    (stroke,) = cue_strokes(decided, session.position)
+                    if session.frame.in_hand and np.isfinite(decided.place[0]).all():
+                        session.place(*decided.place[0].tolist())
+                    nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
+                    sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
+                    session.play(stroke, nominated=nominated if sensible else AUTO)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""
-
-    def _play(self, decided: Strokes) -> None:
-        """An agent's stroke, after its decision to play if the opponent has fouled."""
-        session = self.session
-        if session.frame.phase == "choice":
-            session.choose("play")
-        (stroke,) = cue_strokes(decided, session.position)
-        if session.frame.in_hand and np.isfinite(decided.place[0]).all():
-            session.place(*decided.place[0].tolist())
-        nominated = int(decided.nominate[0])
-        sensible = nominated in nominations_of(session.frame) or (
-            nominated == DECLINED and session.frame.free_ball
-        )
-        session.play(stroke, nominated=nominated if sensible else AUTO)

@@ -1,11 +1,10 @@
-"""What is the game on the page? One frame in memory, with a list of acts to undo and redo.
-
-Each stroke and decision is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke
-that is undone and played again meets the same execution errors."""
+"""What is the game on the page? A list of acts, in which undo and redo move. The state after each holds the random stream, so a
+stroke that is played again meets the same execution errors."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -13,8 +12,7 @@ import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import CueKind, Floats, Ints, NoiseName
-from ..advice import CueStroke, Room
-from ..advice.room import room_for
+from ..advice import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, mask_of_present
 from ..game.fouls import AUTO
 from ..game.frame import Choice, Frame, write_frame
@@ -37,7 +35,6 @@ from ..tasks.threads import Threads
 from .grid import Grid, numbers_of, stroke_of
 
 DECLINED = 0  # the nomination of a player who does not use a free ball
-MOST_FRAMES = 99  # the longest match
 STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
 
 
@@ -50,13 +47,12 @@ class Act:
     player: int | None = None  # who did it
     played: Played | None = None  # for a stroke: as it was struck, simulated and judged
     detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
-    room: Room | None = None  # for a stroke: how the cue found room for it
     asked: dict[str, Any] = field(default_factory=dict)  # what was asked for, as JSON types: see ``acts``
     luck: float = 0.0  # of a stroke, in its player's chance to win; 0 in practice
+    answers: "Act | None" = None  # for a choice: the foul
 
     @property
     def standing(self) -> Standing:
-        """The frame after it."""
         places, here = np.array(self.state["positions"]), np.array(self.state["on_table"])
         return Standing(Frame.from_dict(self.state["frame"]), places, here)
 
@@ -64,32 +60,24 @@ class Act:
 class Session:
     """A frame to play, set up, undo, save and load; ``flight``: balls fly, and the cue can be raised to 70 degrees."""
 
-    noise: list[NoiseName]  # execution errors of each seat
-    practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
-    best_of: int  # the length of the match in frames; 1: a single frame
-    won: list[int]  # frames that each seat has won in the match before this one
     hints: list[int]  # how often each seat asked for advice in this frame
     undone: int  # how often something was taken back in it
     acts: list[Act]
     at: int  # number of acts that count; the following ones were undone
-    begun: int  # games begun or loaded so far
-    grid: Grid  # on which all is played
-    options: Options  # of this frame, without execution errors
     tables: Frames  # of the one table
 
-    def __init__(
-        self, *, layout: str = "break_off", seed: int = 0, cue: CueKind = "real", flight: bool = False
-    ):
-        box = Options(task="frame", max_strokes=None, **FRAMES)
-        if flight:
-            box = box.but(elevation=70, physics={"flight": True})
-        self.options = box.but(miss="clear_path", layout=layout, cue=cue)
-        self.noise, self.practice = ["none", "none"], False
-        self.best_of, self.won, self.begun = 1, [0, 0], 0
-        self.grid = Grid()
+    def __init__(self, *, layout: str = "break_off", seed: int = 0, flight: bool = False):
+        more: dict[str, Any] = {"elevation": 70, "physics": {"flight": True}} if flight else {}
+        box = Options(task="frame", max_strokes=None, miss="clear_path", cue="real", **FRAMES)
+        self.options: Options = box.but(**more)  # of this frame, without execution errors
+        self.noise: list[NoiseName] = ["none", "none"]  # of each seat
+        self.practice: bool = (
+            False  # alone: player 0 has every turn, and after a foul the balls stay as they lie
+        )
+        self.begun: int = 0  # games begun or loaded so far
+        self.grid: Grid = Grid()  # on which all is played
         self._generator = np.random.default_rng(0)
         self._buffers = ShotBuffers(1, path=True)
-        self._played: Played | None = None
         self._with: dict[str, Options] = {}
         self.new(layout=layout, seed=seed)
 
@@ -111,18 +99,7 @@ class Session:
 
     @property
     def game(self) -> RulesName:
-        """The rules that are played: "snooker", "six_red" or "shoot_out"."""
         return self.options.game
-
-    @property
-    def frames(self) -> list[int]:
-        """Frames that each seat has won in the match, with this one if it is over."""
-        return [won + (self.frame.winner == seat) for seat, won in enumerate(self.won)]
-
-    @property
-    def match_over(self) -> bool:
-        """Whether one seat has won the match."""
-        return max(self.frames) > self.best_of // 2
 
     @property
     def breaks(self) -> list[list[int]]:
@@ -133,10 +110,6 @@ class Session:
                 own = found[one.player]
                 own[len(own) - (one.break_before > 0) :] = [one.break_before + one.points]
         return found
-
-    def room(self, stroke: CueStroke) -> Room:
-        """How the cue finds room for a stroke as the table lies; nothing is played."""
-        return room_for(stroke.numbers(), self.as_visit(), self.options.rules)
 
     @property
     def state(self) -> dict[str, Any]:
@@ -156,7 +129,6 @@ class Session:
         return of_tables(self.tables)
 
     def as_visit(self) -> Positions:
-        """The next stroke's position, as one of a visit."""
         if self.frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         return visit_of(self.frame, self.position)
@@ -171,7 +143,7 @@ class Session:
     def as_a_whole(self) -> Iterator["Session"]:
         """What is done in this context is done as a whole: after an exception the session is as it was before."""
         state, kept = self.state, self.__dict__.copy()
-        kept |= {name: list(kept[name]) for name in ("acts", "noise", "won", "hints")}
+        kept |= {name: list(kept[name]) for name in ("acts", "noise", "hints")}
         try:
             yield self
         except BaseException:
@@ -181,36 +153,23 @@ class Session:
 
     def twin(self) -> "Session":
         """A copy for another thread; of the acts it holds the last one only."""
-        other = object.__new__(Session)
-        other.__dict__.update(self.__dict__)
-        other._buffers, other.noise, other.won = ShotBuffers(1, path=True), list(self.noise), list(self.won)
+        other = copy(self)
+        other._buffers, other.noise = ShotBuffers(1, path=True), list(self.noise)
         other.tables = Frames(self.options.rules, 1)
         other._set(self.state)
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
     def new(
-        self,
-        *,
-        layout: str | None = None,
-        seed: int = 0,
-        breaker: int = 0,
-        game: str | None = None,
-        best_of: int = 1,
+        self, *, layout: str | None = None, seed: int = 0, breaker: int = 0, game: str | None = None
     ) -> None:
-        """Begin a match of an odd number of frames; ``layout`` and ``game`` stay unless they are given."""
-        if integer("best_of", best_of, 1, MOST_FRAMES) % 2 == 0:
-            raise refuse("best_of", best_of, "must be odd, so that one player wins")
-        self._deal(self._but(layout, game), seed, breaker)
-        self.best_of, self.won = best_of, [0, 0]
-
-    def next_frame(self, *, seed: int = 0) -> None:
-        """Begin the next frame of the match, which the other player breaks off; after its end a new match."""
-        if self.frame.phase != "over":
-            raise refuse("next", True, "must be left out: the frame is not over")
-        won = [0, 0] if self.match_over else self.frames
-        self._deal(self.options, seed, 1 - self.frame.breaker)
-        self.won = won
+        integer("seed", seed, 0, 2**63 - 1)
+        integer("breaker", breaker, 0, 1)
+        self._play_by(self._but(layout, game))
+        self.tables.seed(0, np.random.default_rng(seed))
+        self.tables.deal(np.zeros(1, np.int64), drawn=False)
+        self._write(replace(self.frame, striker=breaker, breaker=breaker))
+        self._begin("new")
 
     def _but(self, layout: str | None, game: str | None) -> Options:
         """The options with another layout and game; the Shoot Out has no miss rule."""
@@ -221,15 +180,6 @@ class Session:
     def _play_by(self, options: Options) -> None:
         self.options, self._with = options, {}
         self.tables = Frames(options.rules, 1)
-
-    def _deal(self, options: Options, seed: int, breaker: int) -> None:
-        integer("seed", seed, 0, 2**63 - 1)
-        integer("breaker", breaker, 0, 1)
-        self._play_by(options)
-        self.tables.seed(0, np.random.default_rng(seed))
-        self.tables.deal(np.zeros(1, np.int64), drawn=False)
-        self._write(replace(self.frame, striker=breaker, breaker=breaker))
-        self._begin("new")
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
@@ -248,20 +198,20 @@ class Session:
         striker = frame.striker
         tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self.options, self.position)
-        self._played, room = None, self.room(stroke)
+        kept = list[Played]()
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["nominate"] = {AUTO: None, DECLINED: "none"}.get(nominated, NAMES[nominated])
+        asked["nominate"] = nominated
         tables.nominated[0] = nominated
-        crew, luck = Crew(self._buffers, self._watch), self._luck(actions, striker)
+        crew = Crew(self._buffers, lambda k, buffers, j, agents: kept.append(tables.record(k, buffers, j)))
+        luck = self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
-        assert self._played is not None
-        played = replace(self._played, before=frame, meant=meant)
+        played = replace(kept[0], before=frame, meant=meant)
         if self.practice:
             self._hand_back()
         self.grid.settle(tables, before["positions"])
         words = NAMES[nominated] if nominated > CUE else ""
-        return self._did(Act("stroke", self.state, striker, played, words, room, asked, luck))
+        return self._did(Act("stroke", self.state, striker, played, words, asked, luck))
 
     def _luck(self, actions: Floats, striker: int) -> float:
         """The luck of a stroke that is about to be played, by the chance to win under the larger errors of both."""
@@ -276,9 +226,6 @@ class Session:
 
         first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win(self.options_with(errors)))
         return float(first[0] if striker == 0 else -first[0])
-
-    def _watch(self, k, buffers, j, agents):
-        self._played = self.tables.record(k, buffers, j)
 
     def _hand_back(self):
         frame = self.frame
@@ -300,9 +247,6 @@ class Session:
         return self._decide("choice", after, what, {"choice": what})
 
     def concede(self) -> Act:
-        """End the frame: the striker concedes."""
-        if self.frame.phase == "over":
-            raise refuse("phase", "over", "must not be over")
         return self._decide("concede", self.frame.concede(self.frame.striker), "", {"declare": "concede"})
 
     def claim(self) -> Act:
@@ -321,14 +265,16 @@ class Session:
         px, py = places[CUE].tolist()
         return px, py
 
-    def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool) -> None:
-        """Put the balls as in a position. ValueError names the ball or the field."""
+    def set_up(
+        self, position: Position, *, scores: Any = (0, 0), striker: int = 0, free_ball: bool = False
+    ) -> None:
+        if position.over:
+            raise refuse("over", True, "must be false: there is no stroke to play")
         positions, on_table, _ = position.arrays()
-        mask = mask_of_present(on_table) & ~1
-        for i in np.flatnonzero(~on_table):
-            positions[i] = 0.0
+        scores = tuple(scores) if isinstance(scores, list) else scores
         game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
-        game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
+        game |= {"break_points": position.points, "in_hand": position.in_hand}
+        game |= {"on_table": mask_of_present(on_table) & ~1}
         rules: Any = {"miss": self.options.miss, "rules": self.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
@@ -336,32 +282,29 @@ class Session:
         self._did(Act("set_up", self.state))
 
     def undo(self) -> bool:
-        """Undo the last act; returns whether there was one."""
-        return self._go(self.at - 1)
+        return self.go_to(self.at - 1)
 
     def redo(self) -> bool:
-        """Redo an act that was undone; returns whether there was one."""
-        return self._go(self.at + 1)
+        """Do the act again that was undone last; returns whether there was one, as ``undo``."""
+        return self.go_to(self.at + 1)
 
-    def go_to(self, acts: list[Act], at: int) -> None:
-        """The game of these acts as it stood before act ``at``: those from there on can be done again."""
-        if self.acts[: len(acts)] != acts:  # else what was played since can be done again, too
-            self.acts = list(acts)
-        self._go(at)
+    def go_to(self, at: int, acts: Sequence[Act] = ()) -> bool:
+        """The game as it stood before act ``at``, of these acts if there are any; returns whether there is such a place."""
+        if self.acts[: len(acts)] != [*acts]:  # else what was played since can be done again, too
+            self.acts = [*acts]
+        if not 1 <= at <= len(self.acts):
+            return False
+        self._set(self.acts[at - 1].state)
+        self.at = at
+        return True
 
     def save(self) -> dict[str, Any]:
-        game = {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
-        return {"format": "snooker-game", "version": 1, **game}
+        return {"practice": self.practice, "noise": list(self.noise), "cue": self.cue, "state": self.state}
 
     def load(self, saved: object) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
-        fields = ("format", "version", "practice", "noise", "cue", "state")
-        if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            allowed = 'must be a saved game, with "format": "snooker-game"'
-            raise refuse_what("saved", "something else", allowed)
-        if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
-            what = f"version {saved.get('version')!r} with {sorted(saved)}"
-            raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
+        if not isinstance(saved, dict) or set(saved) != {"practice", "noise", "cue", "state"}:
+            raise refuse_what("saved", "something else", "must be a dict with practice, noise, cue and state")
         noise = read_levels("saved.noise", saved["noise"])
         practice, cue = truth("saved.practice", saved["practice"]), choice("saved.cue", saved["cue"], CUES)
         state = saved["state"]
@@ -371,8 +314,7 @@ class Session:
         with self.as_a_whole():
             self._play_by(self._but(None, frame.get("rules", "snooker") if isinstance(frame, dict) else None))
             self._set(state)
-            self.practice, self.cue = practice, cast(CueKind, cue)
-            self.noise, self.best_of, self.won = noise, 1, [0, 0]
+            self.practice, self.cue, self.noise = practice, cast(CueKind, cue), noise
             self._begin("load")
 
     def _begin(self, what: str) -> None:
@@ -380,22 +322,15 @@ class Session:
         self.hints, self.undone = [0, 0], 0
 
     def _decide(self, what: str, after: Frame, detail: str, asked: dict[str, str]) -> Act:
-        striker = self.frame.striker
+        striker, foul = self.frame.striker, self.acts[self.at - 1] if detail else None
         self._write(after)
-        return self._did(Act(what, self.state, striker, detail=detail, asked=asked))
+        return self._did(Act(what, self.state, striker, detail=detail, asked=asked, answers=foul))
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]
         self.acts.append(act)
         self.at += 1
         return act
-
-    def _go(self, at):
-        if not 1 <= at <= len(self.acts):
-            return False
-        self._set(self.acts[at - 1].state)
-        self.at = at
-        return True
 
     def _set(self, state: dict[str, Any]) -> None:
         # no rewards are paid here, and no stroke draws from the generator

@@ -224,7 +224,7 @@ def test_a_game_for_one_device_has_one_door():
         scene = alone("api/scene")[1]
         assert list(alone.server.tokens) == [PERSON] == scene["players"][:1] and scene["invites"] == []
         assert FRIEND not in scene["players"]
-        refused(alone("api/sit", {}), 422, "--host")
+        refused(alone("api/players", {"players": [PERSON, FRIEND]}), 422, "must be one of")
 
 
 def seat(line, who):
@@ -249,14 +249,15 @@ def test_each_seat_plays_in_its_own_turn_alone(hosted):
     asked = [name for name, route in POST.items() if route.friend]
     for name in set(POST) - set(asked):
         refused(friend(f"api/{name}", {}), 403, "the host alone")
-    state = friend("api/sit", {})[1]
+    hosted("api/players", {"players": [PERSON, FRIEND]})
+    state = friend("api/state")[1]
     assert state["players"] == ["friend", "person"] and state["labels"] == ["Friend", "You"]
     assert hosted("api/state")[1]["labels"] == ["You", "Friend"]
     assert watcher("api/state")[1]["labels"] == ["Player 1", "Player 2"]
     stroke = {"speed": 2, "aim": STRAIGHT}
     acts = {"stroke": stroke, "place": {"place": [0.1, -1.1]}, "concede": {}}
     questions = {"advise": {"samples": 1}, "destinations": stroke}
-    assert {*acts, *questions, "room", "sit"} == set(asked)
+    assert {*acts, *questions, "room"} == set(asked)
     for name, body in (acts | questions).items():
         assert refused(friend(f"api/{name}", body), 422, "must be yours")["value"] == "'Friend'"
     hosted("api/position", {"position": EASY, "striker": 1})
@@ -268,23 +269,6 @@ def test_each_seat_plays_in_its_own_turn_alone(hosted):
     assert hosted("api/state")[1]["last"].startswith("Friend: Red potted")
     assert hosted("api/undo", {})[0] == 200 and not friend("api/state")[1]["redo"]
     assert friend("api/concede", {})[1]["words"].startswith("Frame over: Friend won")
-
-
-def test_a_friend_takes_no_seat_that_the_host_has_given_to_another(hosted):
-    """Nor one of a game that goes on, or alone at the table; it errs as the host does."""
-    friend, session = seat(hosted, FRIEND), hosted.server.service.session
-    session.noise[:], session.practice = ["club", "none"], True
-    refused(friend("api/sit", {}), 422, "ask your host")
-    session.practice = False
-    hosted("api/stroke", {"speed": 3, "aim": 1.5})
-    refused(friend("api/sit", {}), 422, "ask your host")
-    hosted("api/undo", {})
-    assert friend("api/sit", {})[1]["noise"] == ["club", "club"]
-    hosted("api/players", {"players": [PERSON, "ghost_ball"]})
-    refused(friend("api/sit", {}), 422, "ask your host")
-    told = hosted("api/players", {"players": [PERSON, FRIEND]})[1]
-    assert told["players"] == [PERSON, FRIEND] and told["noise"][0] == told["noise"][1]
-    assert friend("api/state")[1]["players"] == [FRIEND, PERSON]
 
 
 def test_invitations_hold_their_tokens_and_say_what_is_missing(hosted, monkeypatch):

@@ -145,8 +145,8 @@ def test_errors_of_both_seats_and_what_was_played_on():
     data = sn.replay(env).to_dict()
     assert (data["version"], data["physics"], data["table"]) == (2, "paper", "match")
     assert all((one["cue_kind"], one["noise"]) == ("real", {"aim_deg": 0.1}) for one in data["strokes"])
-    match = Session(cue="free")
-    match.noise = ["club", "none"]
+    match = Session()
+    match.noise, match.cue = ["club", "none"], "free"
     for aim in (np.pi / 2, 1.5):
         match.play(CueStroke(speed=2.0, aim=aim))
         if match.frame.phase == "choice":

@@ -60,7 +60,7 @@ class Watched:
 def module_page(browser, **options):
     """An empty page in which ``window.table`` is what ``table.js`` exports."""
     page = browser.new_page(**options)
-    script = f"{table_js()}\nwindow.table = {{decode, TableView, Player, mount}};"
+    script = f"{table_js()}\nwindow.table = {{decode, TableView}};"
     page.set_content(f"<!DOCTYPE html><body><script type=module>{script}</script>")
     page.wait_for_function("window.table")
     return page

@@ -209,7 +209,7 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     bare = {"x": [0.0, 0.3], "y": [0.0, 0.5], "on": [1, 0]}
     places = [[0.3, 0.5], [0.5, -1.0], [-0.5, 0.5], [0.2, -0.52], [-0.4, -0.6], [0.0, 0.0], [0.0, -0.5]]
     extra = {
-        "lines": [{"points": [[0.5, -1.5], [0.5, -0.5]], "colour": [255, 255, 0], "arrow": True}],
+        "lines": [{"points": [[0.5, -1.5], [0.5, -0.5]], "colour": [255, 255, 0]}],
         "rings": [{"x": -0.5, "y": 0.5, "ball": 21, "alpha": 0.9}],
         "heat": [dict(x0=0.1, y0=-0.6, cell=0.1, nx=2, ny=1, values=[0, 5], rgb=[255, 0, 255])],
         "labels": True,

@@ -6,11 +6,11 @@
  */
 
 import { decode, showChance, TableView } from "./table.js";
-import { Aim } from "./play_aim.js";
+import { Aim, firstAim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
+import { Clock } from "./play_clock.js";
 import { Door } from "./play_door.js";
 import { Drills } from "./play_drill.js";
-import { firstAim } from "./play_first.js";
 import { Friend } from "./play_friend.js";
 import { breakWords, ending, helped, opponents } from "./play_level.js";
 import { ask, by, confirmed, DOWN, fill, isPerson, keep, kept, Latest, make } from "./play_parts.js";
@@ -20,13 +20,11 @@ import { Room } from "./play_room.js";
 import { SetUp } from "./play_setup.js";
 import { Share } from "./play_share.js";
 import { Sound } from "./play_sound.js";
-import { Stats } from "./play_stats.js";
 import { Tour } from "./play_tour.js";
 
 const OWN = "own", FINE = 30, POWER = 2.5;
-const BEST_OF = [1, 3, 5, 7, 9, 11, 19, 35];
-/** Slow motion, zoom, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
-const SLOW = 0.2, ZOOM = 2, CALLED = 1600, AGENTS_LEAD = 1;
+/** Slow motion, time of a call [ms], how long an agent's cue is seen before its stroke [s]. */
+const SLOW = 0.2, CALLED = 1600, AGENTS_LEAD = 1;
 /** Keys that go on while they are held: after [ms], by so many steps [1/ms]. */
 const STEPS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ..."wsadeq"], HOLD = 300, RATE = 0.03;
 /** The loupe at the first contact shows so much of the table [m]; it is shown where balls are smaller [CSS pixels], and what is about lies so many of its breadths off its corner. */
@@ -55,7 +53,6 @@ class Page {
     this.moving = null;
     this.held = false;
     this.kind = "play";
-    this.zoomed = false;
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene, true);
     this.loupe = new TableView(by("loupe"), this.scene, true);
@@ -66,7 +63,7 @@ class Page {
     this.setup = new SetUp(this);
     this.review = new Review(this);
     this.sound = new Sound();
-    this.stats = new Stats(this);
+    this.clock = new Clock(this);
     this.drills = new Drills(this);
     this.share = new Share(this);
     this.friend = new Friend(this);
@@ -86,8 +83,6 @@ class Page {
     by("skip").onclick = () => this.skip();
     by("turn").onclick = () => this.hurry();
     by("fold").onclick = () => this.fold();
-    by("zoom").onclick = () => this.zoom();
-    by("full").onclick = () => this.full();
     document.addEventListener("pointerdown", () => this.sound.wake());
     by("go").onclick = () => this.goOn();
     by("slow").onclick = () => this.again(SLOW);
@@ -96,18 +91,17 @@ class Page {
     by("concede").onclick = async () => { if (await confirmed("Concede the frame?", "Concede")) this.try(() => ask("concede", {})); };
     by("new").onclick = () => this.sure(`Discard this frame and begin a new game? ${this.state.by_link ? "This one stays under “Games by link”." : "This cannot be undone."}`, "New game", () => this.begin());
     by("again").onclick = () => this.again();
-    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { next: true, seed: seed() })));
+    by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { breaker: 1 - this.state.breaker, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
-    by("save").onclick = () => this.try(async () => { keep("snooker-game.json", await ask("save", {}), "application/json"); });
+    by("save").onclick = () => this.try(async () => { keep("snooker-game.txt", await this.share.link(), "text/plain"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
-    by("load").onclick = () => this.sure("Discard this frame and load a file?", "Load", () => by("file").click());
-    by("file").onchange = () => this.try(() => this.load());
+    by("load").onclick = () => by("file").click();
+    by("file").onchange = () => this.try(async () => { this.share.open(await by("file").files[0].text()); by("file").value = ""; });
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("rules"), this.games);
     by("rules").onchange = () => fill(by("layout"), by("rules").value === "six_red" ? ["break_off", "colours"] : Object.keys(LAYOUTS), undefined, name => LAYOUTS[name]);
     by("rules").onchange();
-    fill(by("best-of"), BEST_OF.map(String), "1", n => (n === "1" ? "one frame" : `best of ${n}`));
     by("level").onchange = () => this.level();
     for (const k of [0, 1]) {
       fill(by(`who-${k}`), this.players);
@@ -118,7 +112,7 @@ class Page {
     by("practice").onchange = () => this.seats();
     fill(by("cue"), this.cues, undefined, kind => CUES[kind]);
     by("cue").onchange = () => this.seats();
-    by("help-open").onclick = () => this.help();
+    by("help-open").onclick = () => by("help").showModal();
     for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => {
       if (one.open) one.scrollIntoView({ block: "nearest" });
     };
@@ -137,30 +131,10 @@ class Page {
   /** Let a phone show the table; `otherwise`: whether another screen folds. */
   compact(otherwise) { if (PHONE.matches || otherwise !== undefined) this.fold(PHONE.matches); }
 
-  full() {
-    const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen?.();
-    done?.catch(error => this.trouble(error));
-  }
-
-  zoom() {
-    this.zoomed = !this.zoomed;
-    by("zoom").setAttribute("aria-pressed", String(this.zoomed));
-    this.fit();
-  }
-
-  /** Fit the table to the screen, or zoom to the middle of the stroke. */
+  /** Fit the table to the screen. */
   fit() {
-    const { view } = this;
-    view.resize();
+    this.view.resize();
     this.loupe.resize();
-    if (this.zoomed && this.aiming) {
-      const { met } = this.aim.overlay(), [[x0, x1], [y0, y1]] = this.scene.extent, scale = view.scale * ZOOM;
-      const [wide, high] = [by("table").width / scale / 2, by("table").height / scale / 2], [half, long] = view.upright ? [wide, high] : [high, wide];
-      const middle = (value, low, high_, room) => (room > (high_ - low) / 2 ? (low + high_) / 2 : Math.min(high_ - room + 0.1, Math.max(low + room - 0.1, value)));
-      view.still = null;
-      view.look(middle((this.balls.x[0] + met.x) / 2, x0, x1, half), middle((this.balls.y[0] + met.y) / 2, y0, y1, long), scale);
-      this.near = true;
-    } else if (this.near) { view.still = null; this.near = false; }
     this.redraw();
   }
 
@@ -201,10 +175,9 @@ class Page {
     this.state = state;
     this.strength = me === "person" && who in this.menu && (errors ?? state.noise[1]) === state.noise[1] ? who : OWN;
     if (first) { this.put(state); this.drills.resume(); }
-    if (fresh || state.strokes < this.played) { this.still(); this.stats.key = null; }
+    if (fresh || state.strokes < this.played) { this.still(); this.clock.key = null; }
     if (fresh) this.review.end();
     if (fresh && !first) {
-      this.stats.times.clear();
       this.played = state.by_link?.visit ?? 0;
       this.replay = state.strokes > 0;
       if (!this.drills.now) this.aim.set({ speed: POWER });
@@ -270,14 +243,13 @@ class Page {
     this.show();
   }
 
-  /** Ask for confirmation before a game with strokes, or a match, is discarded that is not over. */
+  /** Ask for confirmation before a frame with strokes is discarded that is not over. */
   async sure(question, yes, then) {
-    const { strokes, best_of: length, phase, match_over: ended } = this.state ?? {};
-    if (length === 1 && (!strokes || phase === "over") || ended || await confirmed(question, yes)) then();
+    if (!this.state?.strokes || this.state.phase === "over" || await confirmed(question, yes)) then();
   }
 
   begin() {
-    this.go("new", { layout: by("layout").value, game: by("rules").value, best_of: Number(by("best-of").value), seed: seed() });
+    this.go("new", { layout: by("layout").value, game: by("rules").value, seed: seed() });
     by("start").open = false;
     this.compact();
   }
@@ -286,11 +258,6 @@ class Page {
     await this.drills.stop();
     this.held = false;
     await this.try(() => ask(name, body));
-  }
-
-  help() {
-    if (by("help").open) by("help").close();
-    else by("help").showModal();
   }
 
   /** Show this table: the state, or one of a stroke. */
@@ -321,9 +288,8 @@ class Page {
       this.settled = state.revision;
       this.friend.settled().catch(error => this.trouble(error));
       this.room.changed();
-      if (this.zoomed) this.fit();
     }
-    this.stats.turn(this.aiming);
+    this.clock.turn(this.aiming);
   }
 
   /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
@@ -358,9 +324,8 @@ class Page {
     const stroke = decode({ format: "snooker-replay", version: 2, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
       this.moving = { stroke, rate, at: this.state.players[stroke.player] === "person" || rate < 1 ? -0.4 : -AGENTS_LEAD, now: null, done };
-      if (this.near) this.fit();
       if (this.state.players[stroke.player] === "person") this.compact();
-      this.stats.turn(false);
+      this.clock.turn(false);
       this.room.changed();
       this.put(data.tables[0]);
     });
@@ -382,14 +347,9 @@ class Page {
 
   async again(rate = 1) {
     if (!this.state.strokes || this.behind || this.setup.open) return;
-    await this.film(async () => (await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate);
-  }
-
-  async film(stroke, rate = 1) {
-    if (this.behind) return;
     this.busy = true;
     this.compact();
-    try { await this.move(typeof stroke === "function" ? await stroke() : stroke, rate); } catch (error) { this.moving = null; this.trouble(error); }
+    try { await this.move((await ask("strokes", undefined, `?from=${this.state.strokes - 1}`)).strokes[0], rate); } catch (error) { this.moving = null; this.trouble(error); }
     this.busy = false;
     this.catchUp();
   }
@@ -411,7 +371,6 @@ class Page {
   play() {
     if (this.aiming) this.once(async () => {
       by("play").disabled = true;
-      this.stats.played();
       const { speed, side, top, aim, elevation } = this.aim.wish;
       await this.placing.quiet();  // the last place of a drag makes a new revision
       const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
@@ -432,34 +391,18 @@ class Page {
     this.show();
   }
 
-  async load() {
-    const [file] = by("file").files;
-    by("file").value = "";
-    if (!file) return undefined;
-    const text = await file.text();
-    try {
-      const saved = JSON.parse(text), position = saved?.format === undefined;
-      if (position && !saved?.cue) throw new Error();
-      await this.drills.stop();
-      return await (position ? ask("position", { position: saved }) : ask("load", `{"saved": ${text}}`));
-    } catch (error) {
-      if (error.message && !(error instanceof SyntaxError)) throw error;
-      throw new Error(`${file.name} is not a saved game.${text[0] === "<" ? " Open a replay directly in a browser." : ""}`);
-    }
-  }
+  /** The errors of who sits down: a level's own, a professional's of other agents, of a person those given. */
+  errors(who, own) { return this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? own : "professional"); }
 
-  /** Seat the chosen opponent; one of the five errs as its level says, the person as before. */
+  /** Seat the chosen opponent; the person errs as before. */
   level() {
-    const who = by("level").value;
-    if (who in this.menu) this.go("players", { players: ["person", who], practice: false });
+    const who = by("level").value, { players, noise } = this.state, own = noise[players.indexOf("person")] ?? "amateur";
+    if (who in this.menu) this.go("players", { players: ["person", who], noise: [own, this.errors(who, own)], practice: false });
   }
 
-  /** Send the players; a new agent gets its level's errors or a professional's, a person an amateur's. */
+  /** Send the players, a new one with errors of its own. */
   seats(changed = -1) {
-    if (changed >= 0) {
-      const who = by(`who-${changed}`).value;
-      by(`noise-${changed}`).value = this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? "amateur" : "professional");
-    }
+    if (changed >= 0) by(`noise-${changed}`).value = this.errors(by(`who-${changed}`).value, "amateur");
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked, cue: by("cue").value }));
@@ -484,8 +427,7 @@ class Page {
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, tip = (x, y) => aim.tip(aim.wish.side + x, aim.wish.top + y);
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end(), u: () => this.setup.undo() } : this.review.open ? { Escape: () => this.review.end(), ArrowUp: () => this.review.step(-1), ArrowDown: () => this.review.step(1), Enter: () => this.review.again() } : {
       " ": () => (event.shiftKey ? this.hurry() : this.skip()), Escape: () => (aim.held === "cue" ? aim.up(false) : this.skip()), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(), b: () => this.again(SLOW),
-      z: () => this.zoom(), f: () => this.full(), m: () => this.sound.flip(),
-      "?": () => this.help(),
+      m: () => this.sound.flip(), "?": () => by("help").showModal(),
       ...(this.ended || this.drills.done) && { Enter: () => this.goOn() },
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn), ArrowRight: () => aim.turn(-turn), ArrowUp: () => aim.faster(push), ArrowDown: () => aim.faster(-push),
@@ -522,7 +464,6 @@ class Page {
       by(`who-${k}`).value = state.players[k];
       by(`noise-${k}`).value = state.noise[k];
       by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
-      by(`side-${k}`).querySelector(".frames").textContent = state.best_of > 1 ? `(${state.frames[k]})` : "";
     }
     fill(by("level"), [...Object.keys(this.menu), OWN], this.strength, name => this.menu[name]?.short ?? name);
     by("level-about").textContent = this.menu[this.strength]?.about ?? "";
@@ -571,8 +512,7 @@ class Page {
     by("redo").disabled = !state.redo || this.drills.now;
     by("set").disabled = this.drills.now || state.by_link;
     by("again").disabled = by("slow").disabled = !state.strokes || busy;
-    by("share-stroke").disabled = by("share-replay").disabled = by("replay").disabled = !state.strokes;
-    by("stats-open").disabled = !state.strokes || this.drills.now;
+    by("replay").disabled = !state.strokes;
     by("review-open").disabled = state.practice || !state.strokes && !this.review.kept;
     by("concede").disabled = !mine && !choosing;
     const named = mine && state.nominations.length > 0;
@@ -609,14 +549,13 @@ class Page {
     const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0, best = Math.max(0, ...this.state.breaks[winner] ?? []);
     by("over").hidden = !rest || this.drills.now || phase !== "over" || this.seen === this.table;
     if (phase !== "over") return;
-    const { match_over: ended, best_of: length, frames } = this.state;
-    by("over-who").textContent = `${labels[winner]} won the ${length > 1 && ended ? `match, ${Math.max(...frames)} : ${Math.min(...frames)}` : "frame"}${best < FINE ? "" : ` with ${breakWords(best)}`}`;
+    by("over-who").textContent = `${labels[winner]} won the frame${best < FINE ? "" : ` with ${breakWords(best)}`}`;
     by("next").textContent = this.next;
     by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
     by("over-last").textContent = ending(this.state, last, me);
   }
 
-  get next() { return this.state.by_link ? "New game by link" : this.state.best_of > 1 && this.state.match_over ? "New match" : "Next frame"; }
+  get next() { return this.state.by_link ? "New game by link" : "Next frame"; }
 
   /** An error message beside a place on the table. */
   bubble(text, x, y) {

@@ -16,6 +16,9 @@ const GRASP = { mouse: 9, touch: 24 };
 const FULLNESS = [[0.12, "full ball"], [0.38, "three-quarter ball"], [0.62, "half ball"], [0.87, "quarter ball"], [1, "thin"]];
 const POWERS = [[1, "very soft"], [1.8, "soft"], [3, "medium"], [4.5, "firm"], [6, "hard"], [9, "very hard"]];
 
+/** Offsets of a first aim over a ball's diameter; so many reds are a whole pack. */
+const OFFSETS = [0, 0.5, -0.5, 0.8, -0.8, 0.93, -0.93], PACK = 12;
+
 const DEGREE = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
@@ -207,4 +210,24 @@ export class Aim {
       met,
     };
   }
+}
+
+/** A first aim [rad] for a state: at the ball on with the widest pot, else at a reachable one, thinly while the pack is whole, so that Play alone is no foul;
+ * `otherwise` if nothing is on. balls: as shown; names: of the balls by index. */
+export function firstAim(state, balls, names, extent, R, otherwise) {
+  const [cx, cy] = state.positions.cue, on = new Set(state.balls_on.map(name => names.indexOf(name)));
+  const met = aim => firstContact(balls, 0, aim, extent, R).ball;
+  const open = state.lines.filter(line => line.open && on.has(met(line.aim))).sort((a, b) => b.tolerance - a.tolerance)[0];
+  if (open) return open.aim;
+  const ways = [], packed = state.reds > PACK && on.size > PACK;
+  for (const ball of on) {
+    const x = balls.x[ball] - cx, y = balls.y[ball] - cy, far = Math.hypot(x, y), wide = Math.asin(Math.min(1, 2 * R / far));
+    for (const offset of OFFSETS) {
+      const aim = Math.atan2(y, x) + wide * offset, clear = met(aim) === ball;
+      // a break off strikes an end red of the pack thinly; any other stroke the nearest ball, as full as it can
+      const cost = packed ? 3 * (1 - Math.abs(offset)) - Math.abs(balls.x[ball]) : far + Math.abs(offset);
+      ways.push({ aim, cost: cost + (clear ? 0 : 99) });
+    }
+  }
+  return ways.sort((a, b) => a.cost - b.cost)[0]?.aim ?? otherwise;
 }

@@ -130,7 +130,7 @@ export class Advisor {
     app.show();
   }
 
-  show({ order, suggestions, choices }) {
+  show({ order, suggestions }) {
     this.list = suggestions;
     this.taken = null;
     const items = suggestions.map((one, k) => {
@@ -150,7 +150,7 @@ export class Advisor {
     });
     by("advice").replaceChildren(...items);
     const said = order.replace("errors", "mistakes");
-    by("advice-order").textContent = choices.length ? `If you play, ${said[0].toLowerCase()}${said.slice(1)}` : said;
+    by("advice-order").textContent = this.app.state.phase === "choice" ? `If you play, ${said[0].toLowerCase()}${said.slice(1)}` : said;
     by("advice").scrollIntoView({ block: "nearest" });
     this.app.redraw();
   }

@@ -4,11 +4,11 @@
  * On a seat of the state, "person" is who sits at this page, and "friend" who sits at another.
  */
 
-import { ask, by, isPerson, make } from "./play_parts.js";
+import { by, isPerson, make } from "./play_parts.js";
 
 const FOR = {
   person: ["Your own phone", "can do everything that this page can"],
-  friend: ["A friend", "plays seat 2; if it is taken, choose “a friend, on their device” under New game"],
+  friend: ["A friend", "plays seat 2 once you choose “a friend, on their device” as the opponent, under New game"],
   watcher: ["Watchers", "see everything and change nothing"],
 };
 
@@ -25,7 +25,6 @@ export class Door {
       return make("section", {}, make("h3", { textContent: name }), make("p", { textContent: about }),
         qr ? make("img", { src: qr, alt: `QR code of the address for: ${name}` }) : make("p", { textContent: drawn }), ...texts);
     }));
-    if (app.me === "friend") app.started.then(() => { if (!this.seated && !app.state.strokes) app.try(() => ask("sit", {})); });
   }
 
   get seated() { return this.app.state.players.includes("person"); }

@@ -21,9 +21,9 @@ export function helped({ players, noise, hints, undone, practice }) {
 /** "an 87 break". */
 export const breakWords = points => `${/^(8|11$|18$)/.test(points) ? "an" : "a"} ${points} break`;
 
-/** How the frame ended, in a sentence or two: what was done last unless the score says it, breaks, help, and luck. */
+/** How the frame ended, in a sentence or two: what was done last unless the score says it, breaks, and help. */
 export function ending(state, last, me) {
-  const { labels, breaks: runs, luck } = state, highest = runs.map(own => Math.max(0, ...own)), called = seat => labels[seat].replace("You", "you"), sides = [me, 1 - me].filter(seat => highest[seat]);
+  const { labels, breaks: runs } = state, highest = runs.map(own => Math.max(0, ...own)), called = seat => labels[seat].replace("You", "you"), sides = [me, 1 - me].filter(seat => highest[seat]);
   const breaks = sides.map(seat => `${called(seat)} ${highest[seat]}`).join(", "), help = helped(state).map(one => (one === "no mistakes" ? 'with "no mistakes"' : one)).join(", ");
-  return [/ (conceded|claimed) /.test(last) ? last : "", breaks && `Highest break${sides.length > 1 ? "s" : ""}: ${breaks}.`, help && `${help[0].toUpperCase()}${help.slice(1)}.`, luck.replace(/ %/g, "\u00a0%")].filter(Boolean).join(" ");
+  return [/ (conceded|claimed) /.test(last) ? last : "", breaks && `Highest break${sides.length > 1 ? "s" : ""}: ${breaks}.`, help && `${help[0].toUpperCase()}${help.slice(1)}.`].filter(Boolean).join(" ");
 }

@@ -44,7 +44,6 @@ export function setting(id, words, otherwise, changed) {
   select.onchange = event => { kept.set(id, select.value); changed(event); };
 }
 
-
 export function confirmed(question, yes) {
   const box = by("confirm");
   by("confirm-words").textContent = question;
@@ -61,12 +60,11 @@ export class ServerError extends Error {
   }
 }
 
-/** Send a request: POST with a body, a value or its JSON as text, else GET. A saved game is text, since its random numbers have 64 bits. */
+/** Send a request: POST with a body, else GET. */
 export async function ask(name, body, query = "") {
-  const text = typeof body === "string" ? body : JSON.stringify(body);
-  const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: text };
+  const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
   const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error(DOWN); });
-  if (["replay.html", "save"].includes(name) && reply.ok) return reply.text();
+  if (name === "replay.html" && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
   return found;
@@ -98,22 +96,17 @@ export class Latest {
   quiet() { return this.busy ? new Promise(done => this.waiting.push(done)) : Promise.resolve(); }
 }
 
-/** Distance from c along (ux, uy) to the points R away from the noses of a bed. */
-export function toCushion(cx, cy, ux, uy, [[x0, x1], [y0, y1]], R) {
-  const along = (from, way, low, high) => (way > 1e-12 ? (high - R - from) / way : way < -1e-12 ? (low + R - from) / way : Infinity);
-  return Math.max(0, Math.min(along(cx, ux, x0, x1), along(cy, uy, y0, y1)));
-}
-
 /** Place of ball `which`, sent in the direction `aim`, when it first meets a ball or a cushion: {x, y, ball (-1: cushion), run}. */
-export function firstContact(balls, which, aim, extent, R) {
+export function firstContact(balls, which, aim, [[x0, x1], [y0, y1]], R) {
   const ux = Math.cos(aim), uy = Math.sin(aim), cx = balls.x[which], cy = balls.y[which];
-  let run = toCushion(cx, cy, ux, uy, extent, R), ball = -1;
+  const until = (from, way, low, high) => (way > 1e-12 ? (high - R - from) / way : way < -1e-12 ? (low + R - from) / way : Infinity);
+  let run = Math.max(0, Math.min(until(cx, ux, x0, x1), until(cy, uy, y0, y1))), ball = -1;
   for (let i = 0; i < balls.x.length; i++) {
     if (!balls.on[i] || i === which) continue;
     const bx = balls.x[i] - cx, by_ = balls.y[i] - cy, along = bx * ux + by_ * uy, across = bx * uy - by_ * ux;
     if (along <= 0 || Math.abs(across) >= 2 * R) continue;
-    const until = Math.max(0, along - Math.sqrt(4 * R * R - across * across));
-    if (until < run) { run = until; ball = i; }
+    const met = Math.max(0, along - Math.sqrt(4 * R * R - across * across));
+    if (met < run) { run = met; ball = i; }
   }
   return { x: cx + run * ux, y: cy + run * uy, ball, run };
 }

@@ -9,7 +9,7 @@ _TABLE = WEB / "table"
 
 def table_js(*, player: bool = True) -> str:
     """The JavaScript module that draws a table and, with ``player``, plays a replay; it imports nothing."""
-    names = ("decode", "pen", "paint", "draw", "chance", "graph", *(("play",) if player else ()))
+    names = ("decode", "pen", "paint", "draw", "chance", *(("play",) if player else ()))
     parts = [(_TABLE / f"{name}.js").read_text("utf-8") for name in names]
     if player:
         parts.append(f"const STYLE = {json.dumps((_TABLE / 'player.css').read_text('utf-8'))};\n")

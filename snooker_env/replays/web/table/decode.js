@@ -5,7 +5,7 @@
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units.
  *
  * The files of this folder are joined to one module, `table.js` (`web/__init__.py`): a name of an earlier file is
- * known in the later ones. `TableView` draws a table from its scene, `mount` makes a `Player`.
+ * known in the later ones.
  */
 
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math;
@@ -133,11 +133,6 @@ class Stroke {
       if (fell <= k) out.depth[i] = min(1, ((t - log[fell].t0) / FALL) ** 2);
     });
     return out;
-  }
-
-  /** The table at rest. */
-  get end() {
-    return this.at(this.duration);
   }
 
   /** The orientation of a ball at time t, a quaternion that depends on t alone. */

@@ -277,20 +277,12 @@ export class TableView {
   }
 
   /** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
-  line({ points = [], path, colour = this.ink.text, width = 0.007, dash = [], arrow }) {
+  line({ points = [], path, colour = this.ink.text, width = 0.007, dash = [] }) {
     const { pen } = this;
     const px = max(this.ratio, this.canvas.height / 1000) / this.scale;
     const wide = max(width, 3 * px);
     const way = path ?? new Path2D();
     for (const point of points) way.lineTo(...point);
-    if (arrow && points.length > 1) {
-      const [[ax, ay], [bx, by]] = points.slice(-2);
-      const turn = atan2(by - ay, bx - ax);
-      for (const side of [-2.6, 2.6]) {
-        way.moveTo(bx, by);
-        way.lineTo(bx + 4 * wide * cos(turn + side), by + 4 * wide * sin(turn + side));
-      }
-    }
     this.metres(pen);
     pen.lineJoin = pen.lineCap = "round";
     pen.setLineDash(dash);

@@ -1,9 +1,4 @@
-/**
- * How does a replay play? `mount` makes a `Player` in an element: the table, a score bar, time, buttons, keys.
- *
- * Its options are `autoplay`, `speed`, `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as
- * its parent), `keys` (what listens), `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
- */
+/** How does a replay play? A `Player` fills an element with the table, a score bar, time and buttons, and has the page's keys. */
 
 /** Words for events, by kind; a kind without is no stop for a step. */
 const EVENTS = [
@@ -76,18 +71,15 @@ const page = (players, total, judged) => {
     <table class="sn-help" hidden></table>`;
 };
 
-/** Plays a replay in an element. */
 export class Player {
-  constructor(element, replay, options = {}) {
+  constructor(element, replay) {
     const data = decode(replay);
     const { strokes } = data;
     if (!strokes.length) throw new Error("a replay must hold at least one stroke");
-    this.options = { autoplay: !matchMedia("(prefers-reduced-motion: reduce)").matches, ...options };
-    const { paths = !data.players.length, ghosts = true, spin = "cue", labels = false, speed = 1 } = options;
-    const show = { paths, ghosts, spin, labels };
-    Object.assign(this, { replay: data, strokes, speed, show, k: 0, playing: false });
+    const show = { paths: !data.players.length, ghosts: true, spin: "cue", labels: false };
+    Object.assign(this, { replay: data, strokes, speed: 1, show, k: 0, playing: false });
     this.leads = strokes.map(stroke => (stroke.cue ? LEAD : 0));
-    this.t = -this.leads[0];
+    this.t = -this.leads[0]; // the time within the stroke [s], below 0 before it
     this.total = -PAUSE;
     this.starts = strokes.map((stroke, k) => { // on the scale of the whole replay
       this.total += this.leads[k] + stroke.duration + PAUSE;
@@ -95,31 +87,22 @@ export class Player {
     });
     this.build(element);
     this.tick = this.tick.bind(this);
-    this.watch = new ResizeObserver(() => {
+    const watch = new ResizeObserver(() => {
       this.turn();
       this.view.resize();
       this.update();
     });
-    this.watch.observe(this.canvas);
-    this.watch.observe(this.root);
+    watch.observe(this.canvas);
+    watch.observe(this.root);
     this.update();
-    if (this.options.autoplay) this.play();
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.play();
   }
 
   /** Let the table stand where the page does. */
   turn() {
-    const { root: { clientWidth, clientHeight }, options, ratio } = this;
-    const tall = options.fill && clientHeight > 1.2 * clientWidth;
+    const { root: { clientWidth, clientHeight }, ratio } = this;
+    const tall = clientHeight > 1.2 * clientWidth;
     this.canvas.parentElement.style.aspectRatio = tall ? 1 / ratio : ratio;
-  }
-
-  get stroke() {
-    return this.k;
-  }
-
-  /** Time within the stroke [s]; below 0 before it. */
-  get time() {
-    return this.t;
   }
 
   get isLast() {
@@ -127,12 +110,10 @@ export class Player {
   }
 
   build(element) {
-    const { options } = this;
     const { scene, players, title, win_chance } = this.replay;
     const root = (this.root = put(element, "div"));
     const [wide, high] = TableView.size(scene);
-    const kind = options.fill ? "sn sn-fill" : "sn";
-    setAll(root, { class: kind, tabindex: 0, role: "group", "aria-label": title || "replay" });
+    setAll(root, { class: "sn", tabindex: 0, role: "group", "aria-label": title || "replay" });
     this.ratio = wide / high;
     root.innerHTML = page(players, this.total.toFixed(1), win_chance);
     [this.canvas, this.tip] = root.querySelectorAll("canvas");
@@ -147,9 +128,7 @@ export class Player {
     this.graph = win_chance && new ChanceGraph(this.part("graph"), this);
     this.buildBar();
     this.buildButtons();
-    this.keys = options.keys ?? root;
-    this.onkey = event => this.key(event);
-    this.keys.addEventListener("keydown", this.onkey);
+    document.addEventListener("keydown", event => this.key(event));
   }
 
   /** The bar of time, with a mark for each stroke. */
@@ -255,10 +234,8 @@ export class Player {
 
   /** Show a stroke at a time within it [s]. */
   seek(stroke, t = 0) {
-    const before = this.k;
     this.k = min(this.strokes.length - 1, max(0, stroke));
     this.t = min(this.strokes[this.k].duration + (this.isLast ? 0 : PAUSE), max(-this.leads[this.k], t));
-    if (before !== this.k) this.options.onstroke?.(this.k);
     this.update();
   }
 
@@ -308,7 +285,6 @@ export class Player {
     if (this.isLast || t < end) this.seek(this.k, t);
     else this.seek(this.k + 1, -LEAD);
     if (this.playing) this.waiting = requestAnimationFrame(this.tick);
-    else this.options.onend?.();
   }
 
   /** What is drawn now, as `TableView.draw` takes it. */
@@ -364,11 +340,6 @@ export class Player {
     return { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha };
   }
 
-  /** [[x, y], ...] [m] of all balls as they are on screen. */
-  positions() {
-    return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]);
-  }
-
   update() {
     const sum = this.starts[this.k] + this.t;
     this.shown = this.frame();
@@ -377,7 +348,6 @@ export class Player {
     this.bar.setAttribute("aria-valuenow", sum.toFixed(1));
     this.graph?.mark(sum);
     this.write();
-    this.options.ontime?.(this.t, this.k);
   }
 
   /** Update words and buttons if they have changed. */
@@ -462,16 +432,4 @@ export class Player {
     const dots = on === "any colour" ? colours : [balls.findIndex(one => one.name.startsWith(on))];
     add(on ? "on " : "", dots[0] < 0 ? [] : dots, ` ${on || ""}`);
   }
-
-  destroy() {
-    this.playing = false;
-    cancelAnimationFrame(this.waiting);
-    this.watch.disconnect();
-    this.keys.removeEventListener("keydown", this.onkey);
-    this.root.remove();
-  }
-}
-
-export function mount(element, replay, options) {
-  return new Player(element, replay, options);
 }
