@@ -22,7 +22,6 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import players_of
 from .replays import Replay, replay
-from .replays.chances import check_judge
 from .replays.document import SUFFIXES
 from .replays.film import encoder_file
 
@@ -134,7 +133,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
         made = f"{names[0]}: {env.points} points"
         where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
-    judge = check_judge(player(TACTICIAN).at(env)) if args.frame else None
+    judge: Any = player(TACTICIAN).at(env) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     print(*describe(played), sep="\n")
     print(f"{made} in {len(played)} stroke{'s' * (len(played) > 1)} ({where})")
