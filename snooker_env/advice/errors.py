@@ -59,48 +59,23 @@ class Estimate:
     def source(self) -> str:
         return f"from {self.strokes} stroke{'s' * (self.strokes != 1)}"
 
-    def __str__(self) -> str:
-        return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
-
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, estimated by ``coach``. An ``Estimate`` has a ``value``, the ends ``low`` and ``high``
-    of its 95 % interval, and the number of ``strokes`` that it is based on. An error that cannot be estimated is None.
+    """A player's errors of execution, with 95 % intervals; None where the strokes do not tell."""
 
-    Attributes
-    ----------
-    direction : Estimate or None
-        Standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg].
-    at : float
-        Cue speed [m/s]: 1.5, or the nearest speed between the quartiles of the strokes' speeds.
-    growth : Estimate or None
-        The g [s/m] in the law sqrt(1 + (g V)^2), by which errors of direction grow with the cue speed V, see ``Noise``.
-        None if all strokes have about one speed.
-    speed : Estimate or None
-        Standard deviation of the speed outside lapses, as a share of the speed.
-    aside, faster : Estimate or None
-        Mean errors of measured strokes: of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``],
-        and of the speed, as a share of it.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, coach
-    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> meant = {"speed": 2.0, "aim": 0.8}
-    >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
-    >>> found = coach(strokes, options={"cue": "free", "physics": "paper", "table": "match"}).errors
-    >>> round(found.direction.value, 2), found.direction.strokes, found.at
-    (0.13, 2, 2.0)
-    """
-
-    direction: Estimate | None
-    at: float
-    growth: Estimate | None
-    speed: Estimate | None
-    aside: Estimate | None
-    faster: Estimate | None
+    direction: (
+        Estimate | None
+    )  # standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg]
+    at: float  # [m/s], see ``choose_speed``
+    growth: (
+        Estimate | None
+    )  # the g [s/m] in sqrt(1 + (g V)^2), by which it grows with the cue speed V; see ``Noise``
+    speed: Estimate | None  # standard deviation of the speed outside lapses, as a share of the speed
+    aside: (
+        Estimate | None
+    )  # mean error of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``]
+    faster: Estimate | None  # mean error of the speed, as a share of it
 
 
 class CalledPots(NamedTuple):

@@ -22,11 +22,10 @@ from ..replays.encode import noise_data, table_from
 from ..tasks.noise import LEVELS, Noise, NoiseLike
 from .ask import choose_strokes, name_player
 from .intentions import intend
-from .outcomes import Trials, judge_strokes
+from .outcomes import Suggestion, Trials, judge_strokes
 from .practice import one_position, practice_of
 from .recorded import CUE_PARTS, call_pot, direction_of, read_balls
 from .stroke_words import POCKET_WORDS, ball_name, percent
-from .suggestions import Suggestion
 
 ROUGH, FEW = "tactician_100", 50
 """Who is asked in the first look at all strokes, and how often each is played."""

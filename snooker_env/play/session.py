@@ -13,8 +13,8 @@ import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.types import CueKind, Floats, Ints, NoiseName
-from ..advice import CueStroke, Room
-from ..advice.room import room_for
+from ..advice import CueStroke
+from ..advice.room import Room, room_for
 from ..game.balls import CUE, NAMES, BallOn, mask_of_present
 from ..game.fouls import AUTO
 from ..game.frame import Choice, Frame, write_frame
