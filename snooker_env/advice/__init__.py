@@ -4,7 +4,7 @@ In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, rig
 and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x)."""
 
 from ..players.cue_stroke import CueStroke
-from .ask import Advice, advise
+from .ask import advise
 from .coach import coach
 from .outcomes import Suggestion, destinations
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
@@ -12,7 +12,6 @@ from .stroke_words import POCKET_WORDS
 
 __all__ = [
     "POCKET_WORDS",
-    "Advice",
     "CueStroke",
     "Recorded",
     "Suggestion",

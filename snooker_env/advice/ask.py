@@ -34,36 +34,7 @@ FEWEST = 40  # strokes that are examined at least
 
 @dataclass(frozen=True, kw_only=True)
 class Advice:
-    """The strokes that an agent would play in a position, best first; a sequence of ``Suggestion``.
-
-    Attributes
-    ----------
-    suggestions : tuple of Suggestion
-        The strokes.
-    position : Position
-        The position.
-    scores : (int, int) or None
-        In a frame, the scores of the striker and of the opponent.
-    agent : str
-        Name of the agent.
-    own : bool
-        Whether the strokes are the agent's own; False if none of those is fair, so that others were judged, too.
-    noise : str or dict
-        Execution errors: the name of a level, or the fields of ``Noise``.
-    samples, visits, seed : int
-        As in ``advise``.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
-    >>> len(advice), advice.agent
-    (1, 'search')
-    >>> print(advice)  # doctest: +ELLIPSIS
-    Pots by points expected, without errors:
-    1. black, top left, ... m/s, ..., pot 100 %, 7 points expected
-    """
+    """A sequence of ``Suggestion``; ``advise`` describes the fields."""
 
     suggestions: tuple[Suggestion, ...]
     position: Position
@@ -97,10 +68,8 @@ class Advice:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
-        names = ("agent", "own", "order", "noise", "samples", "visits", "seed")
-        kept = {"position": self.position.to_dict(), **{name: getattr(self, name) for name in names}}
-        kept["scores"] = self.scores and list(self.scores)
-        return {**kept, "suggestions": [one.to_dict() for one in self]}
+        kept = {"position": self.position.to_dict(), "scores": self.scores and list(self.scores)}
+        return vars(self) | kept | {"order": self.order, "suggestions": [one.to_dict() for one in self]}
 
     def __str__(self) -> str:
         return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])
@@ -152,15 +121,21 @@ def advise(
     Returns
     -------
     Advice
-        A sequence of ``Suggestion``. ValueError if an argument is invalid or there is no stroke to play.
+        A sequence of ``Suggestion``, in words with ``str``. Its ``order`` says in words what orders them. ``own``: whether the
+        strokes are the agent's own; False if none of those is fair, so that others were judged, too. ``agent`` is its name,
+        ``noise`` a level or the fields of ``Noise``, ``scores`` None in a visit; ``suggestions``, ``position``, ``samples``,
+        ``visits`` and ``seed`` are as here. ValueError if an argument is invalid or there is no stroke to play.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-    >>> advice = sn.advise(position, agent="search", n=1, samples=50, visits=5)
-    >>> advice[0].ball, sn.POCKETS[advice[0].pocket], advice[0].chance > 0.8
-    (21, 'top left', True)
+    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
+    >>> advice[0].ball, sn.POCKETS[advice[0].pocket]
+    (21, 'top left')
+    >>> print(advice)  # doctest: +ELLIPSIS
+    Pots by points expected, without errors:
+    1. black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
     integer("n", n, 1, 100)
     trials = Trials(

@@ -87,26 +87,19 @@ class CalledPots(NamedTuple):
     paces: Floats  # (n,) cue speeds [m/s]
 
 
-class Fit(NamedTuple):
-    """The errors of a player, and what was found on the way."""
-
-    errors: PlayerErrors
-    direction: Floats | None  # the posterior of its error over ``GROWTHS`` and ``SCALES``
-    pots: CalledPots  # those that were called
-    strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
-
-
-def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
-    """Estimate a player's errors; ``practice``: with the errors ``BASE``."""
+def fit_errors(
+    strokes: list[Recorded], practice: Practice, seed: int
+) -> tuple[PlayerErrors, Floats | None, CalledPots, list[Recorded]]:
+    """A player's errors; the posterior (growths, scales) of the direction's; the called pots; the strokes, without the guessed
+    pots that were likelier to be safeties. ``practice``: with the errors ``BASE``."""
     integer("seed", seed, 0, 2**63)
-    seen = measure_errors(strokes, practice)
-    directions = seen.directions.copy()
+    directions, widths, speeds, paces = measure_errors(strokes, practice)
     known = ~np.isnan(directions)
     guessed = np.array([one.guessed for one in strokes]) & known
     tells = known | np.array([one.potted is not None for one in strokes])
-    at = choose_speed(seen.paces[tells])
-    more = grow_with_speed(seen.paces, at)
-    mixed, meant = weigh_guesses(directions[guessed], seen.widths[guessed], more[:, guessed])
+    at = choose_speed(paces[tells])
+    more = grow_with_speed(paces, at)
+    mixed, meant = weigh_guesses(directions[guessed], widths[guessed], more[:, guessed])
     strokes = list(strokes)
     for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
@@ -122,11 +115,11 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
         log_l = weigh_errors(directions[sure], more[:, sure]) + mixed + weigh_outcomes(rest, at)
         weights = normalise(log_l + np.log(PRIOR)[:, None])
         direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
-        paces = np.concatenate([seen.paces[known], rest.paces])
-        if paces.max() >= SEVERAL * paces.min():
+        tried = np.concatenate([paces[known], rest.paces])
+        if tried.max() >= SEVERAL * tried.min():
             growth = estimate_growth(likeliest, n)
         aside = estimate_mean(directions[known] / more[int(likeliest.argmax()), known], unit)
-    v = seen.speeds[~np.isnan(seen.speeds)]
+    v = speeds[~np.isnan(speeds)]
     speed = None
     if len(v):
         speed = estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
@@ -135,7 +128,7 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
         raise refuse_what("strokes", "none that shows an error", f"must hold strokes {allowed}")
     found = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
     errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
-    return Fit(errors, weights, pots, strokes)
+    return errors, weights, pots, strokes
 
 
 def choose_speed(paces: Floats) -> float:
@@ -238,16 +231,9 @@ def estimate_mean(e: Floats, unit: float) -> Estimate | None:
     return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
 
 
-class Measurement(NamedTuple):
-    """What strokes tell of errors, (n,), NaN where they do not."""
-
-    directions: Floats  # errors, in a professional's standard deviations for a level cue at rest
-    widths: Floats  # ``CALLED`` in the same unit
-    speeds: Floats  # errors, in a professional's standard deviations
-    paces: Floats  # the cue speeds [m/s]; where nothing is known ``POT_SPEED``
-
-
-def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
+def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats, Floats]:
+    """What n strokes tell, NaN where they do not: errors of direction, in a professional's standard deviations for a level cue at
+    rest; ``CALLED`` in this unit; errors of speed in those of speed; cue speeds [m/s], ``POT_SPEED`` where nothing is known."""
     directions, widths, speeds = np.full((3, len(strokes)), np.nan)
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
@@ -284,7 +270,7 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
         own = paces[list(at_pots)]
         ends = np.quantile(own, OUTER, method="lower"), np.quantile(own, 1.0 - OUTER, method="higher")
         paces[list(at_pots)] = np.clip(own, *ends)
-    return Measurement(directions, widths, speeds, paces)
+    return directions, widths, speeds, paces
 
 
 def fit_to_room(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:

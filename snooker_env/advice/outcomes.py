@@ -82,8 +82,6 @@ class Suggestion(CueStroke):
     >>> suggestion = sn.advise(position, agent="search", noise="none", n=1)[0]
     >>> suggestion.kind, suggestion.chance
     ('pot', 1.0)
-    >>> print(suggestion)  # doctest: +ELLIPSIS
-    black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
 
     room: Room
@@ -299,9 +297,8 @@ def destinations(
     >>> import snooker_env as sn
     >>> from snooker_env.advice import destinations
     >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, samples=100)
-    >>> stops.samples, stops.cue.shape[1]
-    (100, 2)
+    >>> destinations(position, {"speed": 1.8, "aim": 0.8}, noise="none").cue.shape
+    (1, 2)
     """
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)

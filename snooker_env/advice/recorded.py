@@ -16,7 +16,7 @@ import numpy as np
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._lib.types import Bools, CueKind, Floats
-from ..game.balls import CUE, N_BALLS, BallOn, next_on
+from ..game.balls import CUE, N_BALLS, BallOn, mask_of_present, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
@@ -68,12 +68,8 @@ class Recorded:
         The balls for the next stroke; ``over=True`` if there is none.
     scores : (int, int)
         In a frame, the scores of the player and of the opponent before the stroke. Default (0, 0).
-    cue : {"free", "real"}, optional
-        Whether rails and balls were in the way of the cue.
-    physics : str, dict or Physics, optional
-        The constants of the table, as of ``Physics.of``.
-    table : str or Table, optional
-        Its cushions and pockets.
+    cue, physics, table : {"free", "real"}, str, dict or Physics, str or Table, optional
+        Where it was played: whether rails and balls were in the way of the cue, the constants, the cushions and pockets.
 
     Examples
     --------
@@ -382,8 +378,8 @@ def _present(ids: Sequence[int]) -> Any:
 
 def _position(places: Floats, here: Any, on: str | None) -> Position:
     """A position of arrays; ``on`` None: the lowest ball."""
-    mask = sum(1 << ball for ball in np.flatnonzero(here).tolist())
-    code = BallOn(next_on(mask)) if on is None else BallOn[choice("ball_on", on.upper(), BallOn.__members__)]
+    lowest = next_on(mask_of_present(here))
+    code = lowest if on is None else BallOn[choice("ball_on", on.upper(), BallOn.__members__)]
     return Position.of_arrays(places, here, np.array([code, 0, 0, 0, 0]))
 
 

@@ -256,13 +256,11 @@ def test_the_speed_of_the_softest_and_hardest_pots_may_be_a_lapse():
         Recorded(position=ALONE, ball=ball, pocket=pocket, played={"speed": v, "aim": meant.aim})
         for v in speeds
     ]
-    paces = estimating.measure_errors(strokes, practice_of("professional", WHERE)).paces
+    *_, paces = estimating.measure_errors(strokes, practice_of("professional", WHERE))
     assert paces.min() >= 1.0 and paces.max() <= 3.0
     assert paces[5:-5].tolist() == speeds[5:-5]
-    assert (
-        estimating.measure_errors(strokes[:3], practice_of("professional", WHERE)).paces.tolist()
-        == speeds[:3]
-    )
+    *_, paces = estimating.measure_errors(strokes[:3], practice_of("professional", WHERE))
+    assert paces.tolist() == speeds[:3]
 
 
 def test_a_cue_that_errors_raised_once_more_was_meant_lower():
@@ -275,7 +273,7 @@ def test_a_cue_that_errors_raised_once_more_was_meant_lower():
     cue = {"speed": 2.0, "aim": np.pi / 2 + 0.003, "elevation": needed + np.radians(0.8)}
     unit = np.radians(LEVELS["professional"].direction_deg(speed=0.0)) * (1.0 + needed / np.radians(15.0))
     played = Recorded(position=at, intended=meant, played=cue)
-    assert estimating.measure_errors([played], real).directions[0] == pytest.approx(0.003 / unit)
+    assert estimating.measure_errors([played], real)[0][0] == pytest.approx(0.003 / unit)
 
 
 def missed_and_made():
