@@ -383,10 +383,5 @@ def test_called_is_the_nearest_line():
 
 
 def test_an_unknown_target_is_named():
-    at, here = (
-        sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0)),
-        {"cue": "real", "physics": "match", "table": "match"},
-    )
-    pot = sn.advice.Recorded(position=at, ball=21, pocket=4, potted=True, **here)
     with pytest.raises(ValueError, match=r"^target = 'wizard'"):
-        sn.advice.coach([pot], target="wizard")
+        coached([Recorded(position=ALONE, ball=21, pocket=4, potted=True)], target="wizard")
