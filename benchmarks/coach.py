@@ -174,7 +174,7 @@ def level(name, noise, pool, chances, blues, args):
         cues, made = play(pool, rows, noise, rng)
         for kind, intended in (("meant, played", True), ("pot, played", False)):
             strokes = [tell(pool[k], cue=cue, intended=intended) for k, cue in zip(rows, cues, strict=True)]
-            errors = coaching.fit_errors(strokes, practice_of(coaching.BASE, WHERE), 0).errors
+            errors, *_ = coaching.fit_errors(strokes, practice_of(coaching.BASE, WHERE), 0)
             keep(f"direction: {kind}", errors.direction, noise.direction_deg(speed=errors.at))
             if intended:
                 keep("growth: meant, played", errors.growth, noise.growth)

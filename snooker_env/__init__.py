@@ -41,7 +41,7 @@ if _typing.TYPE_CHECKING:
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
     from .players import player, players
-    from .replays import RecordReplay, Replay, replay
+    from .replays import Replay, replay
     from .tasks.options import Options
 
 __version__ = "1.0.0"
@@ -56,7 +56,6 @@ __all__ = [
     "Pocket",
     "Position",
     "Positions",
-    "RecordReplay",
     "Replay",
     "Shot",
     "ShotBatch",
@@ -86,7 +85,7 @@ _LATER |= {
     "warmup": "benchmark.warmup",
 }
 _LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
-_LATER |= dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays")
+_LATER |= dict.fromkeys(("Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 
 _register(_gymnasium)

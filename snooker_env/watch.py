@@ -18,7 +18,6 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import players_of
 from .replays import replay
-from .replays.chances import check_judge
 from .replays.document import SUFFIXES
 from .replays.film import encoder_file
 
@@ -114,7 +113,7 @@ def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     if args.frame:
         scores = env.tables.standing(0)["scores"]
         made, where = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}", f"frame {seed}"
-        judge = check_judge(player(TACTICIAN).at(env))
+        judge = player(TACTICIAN).at(env)
     title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
     played = replay(env, title=title, players=names, judge=judge)
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):

@@ -5,23 +5,15 @@ and left middle. Left and right are as seen from the baulk end: right is the yel
 
 from ..players.cue_stroke import CueStroke
 from .ask import advise
-from .coach import Coaching, coach
-from .errors import PlayerErrors
-from .outcomes import Destinations, destinations
+from .coach import coach
+from .outcomes import Suggestion, destinations
 from .recorded import Recorded, read_strokes, strokes_of, write_strokes
-from .room import Room
 from .stroke_words import POCKET_WORDS
-from .suggestions import Advice, Suggestion
 
 __all__ = [
     "POCKET_WORDS",
-    "Advice",
-    "Coaching",
     "CueStroke",
-    "Destinations",
-    "PlayerErrors",
     "Recorded",
-    "Room",
     "Suggestion",
     "advise",
     "coach",

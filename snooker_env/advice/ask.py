@@ -1,21 +1,23 @@
 """What would a player do here, and how would it turn out? ``advise``."""
 
 from collections import Counter
-from dataclasses import asdict, replace
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from .._lib.check import integer, refuse
+from ..planning import Position
 from ..planning.positions import Positions, PositionsLike
 from ..players import Player
 from ..players import player as player_of
 from ..players.cue_stroke import cue_strokes
+from ..replays.referee_words import errors_words
 from ..tasks.noise import NoiseLike
 from .intentions import FOULS, Intention, drop_alike, intend
-from .outcomes import Trials, judge_strokes
+from .outcomes import Suggestion, Trials, judge_strokes
 from .practice import Practice, one_position, practice_of
 from .stroke_words import against_words
-from .suggestions import Advice, Suggestion
 
 AGENT, OF_FRAMES = "planner_500", "tactician_1000"
 """Who is asked if nobody is named: in a visit, and in a frame."""
@@ -28,6 +30,49 @@ FAR = 1.25  # how many times as often a pot must win that takes a ball to lay sn
 CONSIDERED = 20  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 WAYS = 3  # ways of playing the same stroke that are judged: the best one is kept
 FEWEST = 40  # strokes that are examined at least
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advice:
+    """A sequence of ``Suggestion``; ``advise`` describes the fields."""
+
+    suggestions: tuple[Suggestion, ...]
+    position: Position
+    scores: tuple[int, int] | None
+    agent: str
+    own: bool
+    noise: str | dict[str, float]
+    samples: int
+    visits: int
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.suggestions)
+
+    def __iter__(self) -> Iterator[Suggestion]:
+        return iter(self.suggestions)
+
+    def __getitem__(self, index: int) -> Suggestion:
+        return self.suggestions[index]
+
+    @property
+    def order(self) -> str:
+        """In words, what orders the strokes, with whose errors, and whether they are not the agent's own."""
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these strokes are not its own. "
+        errors = errors_words(self.noise)
+        if self.scores is not None:
+            return f"{whose}By chance to win, {errors}:"
+        by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
+        parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
+        return f"{whose}{parts.capitalize()}, {errors}:"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
+        kept = {"position": self.position.to_dict(), "scores": self.scores and list(self.scores)}
+        return vars(self) | kept | {"order": self.order, "suggestions": [one.to_dict() for one in self]}
+
+    def __str__(self) -> str:
+        return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])
 
 
 def advise(
@@ -76,15 +121,21 @@ def advise(
     Returns
     -------
     Advice
-        A sequence of ``Suggestion``. ValueError if an argument is invalid or there is no stroke to play.
+        A sequence of ``Suggestion``, in words with ``str``. Its ``order`` says in words what orders them. ``own``: whether the
+        strokes are the agent's own; False if none of those is fair, so that others were judged, too. ``agent`` is its name,
+        ``noise`` a level or the fields of ``Noise``, ``scores`` None in a visit; ``suggestions``, ``position``, ``samples``,
+        ``visits`` and ``seed`` are as here. ValueError if an argument is invalid or there is no stroke to play.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-    >>> advice = sn.advise(position, agent="search", n=1, samples=50, visits=5)
-    >>> advice[0].ball, sn.POCKETS[advice[0].pocket], advice[0].chance > 0.8
-    (21, 'top left', True)
+    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
+    >>> advice[0].ball, sn.POCKETS[advice[0].pocket]
+    (21, 'top left')
+    >>> print(advice)  # doctest: +ELLIPSIS
+    Pots by points expected, without errors:
+    1. black, top left, ... m/s, ..., pot 100 %, 7 points expected
     """
     integer("n", n, 1, 100)
     trials = Trials(

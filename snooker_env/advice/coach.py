@@ -17,7 +17,7 @@ from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, pass_after_miss
 from ..tasks.noise import LEVELS, NoiseLike
-from .errors import BASE, SCALES, CalledPots, Estimate, Fit, PlayerErrors, fit_errors, list_chances
+from .errors import BASE, SCALES, CalledPots, Estimate, PlayerErrors, fit_errors, list_chances
 from .practice import JUDGING, Practice, keys, one_position, practice_of
 from .recorded import Recorded, agree_options
 
@@ -40,41 +40,7 @@ class Drill:
 
 @dataclass(frozen=True, kw_only=True)
 class Coaching:
-    """The result of ``coach``.
-
-    Attributes
-    ----------
-    errors : PlayerErrors
-        The player's errors of execution.
-    strokes, visits, called, made : int
-        Numbers of strokes and of visits; of called pots whose outcome is known, and of those made.
-    expected : Estimate or None
-        How many of the called pots a player with these errors makes. The 95 % interval covers the uncertainty of the errors
-        and the luck of the pots. If the errors were estimated from these very pots, it agrees with ``made``.
-    likely : Estimate or None
-        How many of them a player of the target level makes.
-    target : str or dict
-        The level that costs are counted against.
-    costs : dict of str to Estimate
-        "potting", "position", "safety": points lost in each visit against the target. A part without strokes is left out.
-    most : str or None
-        The part that costs most; None if no part is known or costs anything.
-    sure : float
-        The share of the bootstrap's samples in which that part costs most.
-    drills : tuple of Drill
-        What to practise, the costliest part first: each has the ``layout`` to play and the ``reason`` in one sentence.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, coach
-    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> over = sn.Position(over=True)
-    >>> made = Recorded(position=at, ball=21, pocket=3, potted=True, points=7, after=over)
-    >>> report = coach([made] * 3, options={"cue": "real", "physics": "match", "table": "match"})
-    >>> report.called, report.made, sorted(report.costs)
-    (3, 3, ['position', 'potting'])
-    """
+    """The fields are described by ``coach``."""
 
     errors: PlayerErrors
     strokes: int
@@ -108,7 +74,9 @@ class Coaching:
             lines.append(f"error of {name}: {said}")
         if errors.direction is not None:
             law = "grows with the cue speed V as sqrt(1 + (g V)^2)"
-            said = f"{law}, g = {errors.growth} s/m" if errors.growth else f"at other speeds {unknown}"
+            said = f"at other speeds {unknown}"
+            if (g := errors.growth) is not None:
+                said = f"{law}, g = {g.value:.3g} [{g.low:.3g}, {g.high:.3g}] s/m"
             lines.append(f"the error of direction {said}")
         for name, one, unit, scale, words in (
             ("aims", errors.aside, "deg", 1.0, ("left", "right")),
@@ -156,19 +124,29 @@ def coach(
     Returns
     -------
     Coaching
+        Each estimate has a ``value``, the ends ``low`` and ``high`` of its 95 % interval, and the number of ``strokes`` that it
+        is based on; one that is not known is None.
+
+        * ``errors``: the standard deviations outside lapses of the ``direction`` [deg], at the cue speed ``at`` [m/s], and of
+          the ``speed``, as a share of it; the ``growth`` of the first with the speed [s/m], see ``Noise``; the means ``aside``
+          (to the player's left [deg]) and ``faster`` (a share) of measured strokes.
+        * ``strokes``, ``visits``; ``called`` and ``made``: the pots whose outcome is known, and those that went in; of these
+          ``expected`` of a player with these errors and ``likely`` at the ``target`` level.
+        * ``costs``: points lost in each visit against the target by "potting", "position" and "safety"; ``most``: which of
+          them costs most, the more so the nearer ``sure``, a share of bootstrap samples, is to 1.
+        * ``drills``, the costliest part first: each has the ``layout`` to play and the ``reason`` in one sentence.
+
         ValueError if an argument is invalid, no error can be estimated, or it is not known where the strokes were played.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.advice import Recorded, coach
-    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
-    >>> pot = {"position": at, "ball": 21, "pocket": 4, "speed": 2.0}
-    >>> after = sn.Position(over=True)
-    >>> table = {"cue": "real", "physics": "match", "table": "match"}
-    >>> report = coach([Recorded(**pot, potted=True, points=7, after=after) for _ in range(3)], options=table)
-    >>> report.made, report.errors.speed is None
-    (3, True)
+    >>> at, over = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0)), sn.Position(over=True)
+    >>> made = Recorded(position=at, ball=21, pocket=4, potted=True, points=7, after=over)
+    >>> report = coach([made] * 3, options={"cue": "real", "physics": "match", "table": "match"})
+    >>> report.made, sorted(report.costs), report.errors.speed
+    (3, ['position', 'potting'], None)
     """
     kept = list(strokes)
     for k, one in enumerate(kept):
@@ -182,8 +160,7 @@ def coach(
     bench = practice_of(target, options, of_frames=True)
     physical = {name: getattr(bench.options, name) for name in ("physics", "table", "fidelity", "cue")}
     base = practice_of(BASE, physical)
-    found = fit_errors(kept, base, seed)
-    kept = found.strokes
+    errors, posterior, called, kept = fit_errors(kept, base, seed)
     points, counts = count_costs(kept, bench, seed)
     visits = sum(not one.goes_on for one in kept) + kept[-1].goes_on  # the last may go on
     rng = np.random.default_rng((seed, RESAMPLES))
@@ -195,21 +172,20 @@ def coach(
             parts[name] = Estimate(value=value, low=low, high=high, strokes=int(many))
     ranked = sorted((name for name in parts if parts[name].value > 0.0), key=lambda name: -parts[name].value)
     most = ranked[0] if ranked else None
-    by_part: dict[str, Floats] = {name: points[:, k] for k, name in enumerate(PARTS)}
     largest = (drawn.argmax(axis=1) == PARTS.index(most)) & (drawn.max(axis=1) > 0.0) if most else np.zeros(1)
     return Coaching(
-        errors=found.errors,
+        errors=errors,
         strokes=len(kept),
         visits=visits,
-        called=len(found.pots.rows),
-        made=int(found.pots.made.sum()),
-        expected=_expect(found),
-        likely=_expect_of_target(found.pots, bench),
+        called=len(called.rows),
+        made=int(called.made.sum()),
+        expected=None if posterior is None else _expect(called, posterior, errors.at),
+        likely=_expect_of_target(called, bench),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
         most=most,
         sure=float(largest.mean()),
-        drills=tuple(_choose_drill(name, kept, parts[name], by_part[name]) for name in ranked),
+        drills=tuple(_choose_drill(name, kept, parts[name], points[:, PARTS.index(name)]) for name in ranked),
     )
 
 
@@ -277,27 +253,27 @@ def play_best_pot(
     return float(went.mean()), float(worth[went].mean()), left
 
 
-def _expect_of_target(pots: CalledPots, bench: Practice) -> Estimate | None:
+def _expect_of_target(called: CalledPots, bench: Practice) -> Estimate | None:
     """How many called pots a player of the target level makes, whose errors are known; the normal interval."""
     physics, noise, base = bench.options.rules.physics, bench.noise, LEVELS[BASE]
     times = [
         noise.direction_deg(physics, speed=v) / base.direction_deg(physics, speed=v)
-        for v in pots.paces.tolist()
+        for v in called.paces.tolist()
     ]
     at = np.log(np.maximum(times, SCALES[0]))
-    p = np.array([np.interp(x, np.log(SCALES), row) for x, row in zip(at, pots.chances, strict=True)])
+    p = np.array([np.interp(x, np.log(SCALES), row) for x, row in zip(at, called.chances, strict=True)])
     return _interval(float(p.sum()), float((p * (1.0 - p)).sum()), len(p)) if len(p) else None
 
 
-def _expect(found: Fit) -> Estimate | None:
+def _expect(called: CalledPots, posterior: Floats, at: float) -> Estimate | None:
     """How many called pots are made: the mean over the errors' posterior, the normal interval of the count."""
-    if found.direction is None or not len(found.pots.rows):
+    if not len(called.rows):
         return None
     mean = square = 0.0
-    for chances, weights in zip(list_chances(found.pots, found.errors.at), found.direction, strict=True):
+    for chances, weights in zip(list_chances(called, at), posterior, strict=True):
         counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
         mean, square = mean + float(counts @ weights), square + float((spread + counts**2) @ weights)
-    return _interval(mean, square - mean * mean, len(found.pots.rows))
+    return _interval(mean, square - mean * mean, len(called.rows))
 
 
 def _interval(mean: float, variance: float, n: int) -> Estimate:

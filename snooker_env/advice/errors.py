@@ -59,48 +59,23 @@ class Estimate:
     def source(self) -> str:
         return f"from {self.strokes} stroke{'s' * (self.strokes != 1)}"
 
-    def __str__(self) -> str:
-        return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
-
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, estimated by ``coach``. An ``Estimate`` has a ``value``, the ends ``low`` and ``high``
-    of its 95 % interval, and the number of ``strokes`` that it is based on. An error that cannot be estimated is None.
+    """A player's errors of execution, with 95 % intervals; None where the strokes do not tell."""
 
-    Attributes
-    ----------
-    direction : Estimate or None
-        Standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg].
-    at : float
-        Cue speed [m/s]: 1.5, or the nearest speed between the quartiles of the strokes' speeds.
-    growth : Estimate or None
-        The g [s/m] in the law sqrt(1 + (g V)^2), by which errors of direction grow with the cue speed V, see ``Noise``.
-        None if all strokes have about one speed.
-    speed : Estimate or None
-        Standard deviation of the speed outside lapses, as a share of the speed.
-    aside, faster : Estimate or None
-        Mean errors of measured strokes: of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``],
-        and of the speed, as a share of it.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, coach
-    >>> at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> meant = {"speed": 2.0, "aim": 0.8}
-    >>> strokes = [Recorded(position=at, intended=meant, played={"speed": 2.0, "aim": 0.8 + e}) for e in (-0.002, 0.002)]
-    >>> found = coach(strokes, options={"cue": "free", "physics": "paper", "table": "match"}).errors
-    >>> round(found.direction.value, 2), found.direction.strokes, found.at
-    (0.13, 2, 2.0)
-    """
-
-    direction: Estimate | None
-    at: float
-    growth: Estimate | None
-    speed: Estimate | None
-    aside: Estimate | None
-    faster: Estimate | None
+    direction: (
+        Estimate | None
+    )  # standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg]
+    at: float  # [m/s], see ``choose_speed``
+    growth: (
+        Estimate | None
+    )  # the g [s/m] in sqrt(1 + (g V)^2), by which it grows with the cue speed V; see ``Noise``
+    speed: Estimate | None  # standard deviation of the speed outside lapses, as a share of the speed
+    aside: (
+        Estimate | None
+    )  # mean error of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``]
+    faster: Estimate | None  # mean error of the speed, as a share of it
 
 
 class CalledPots(NamedTuple):
@@ -112,26 +87,19 @@ class CalledPots(NamedTuple):
     paces: Floats  # (n,) cue speeds [m/s]
 
 
-class Fit(NamedTuple):
-    """The errors of a player, and what was found on the way."""
-
-    errors: PlayerErrors
-    direction: Floats | None  # the posterior of its error over ``GROWTHS`` and ``SCALES``
-    pots: CalledPots  # those that were called
-    strokes: list[Recorded]  # without the guessed pots that were likelier to be safeties
-
-
-def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
-    """Estimate a player's errors; ``practice``: with the errors ``BASE``."""
+def fit_errors(
+    strokes: list[Recorded], practice: Practice, seed: int
+) -> tuple[PlayerErrors, Floats | None, CalledPots, list[Recorded]]:
+    """A player's errors; the posterior (growths, scales) of the direction's; the called pots; the strokes, without the guessed
+    pots that were likelier to be safeties. ``practice``: with the errors ``BASE``."""
     integer("seed", seed, 0, 2**63)
-    seen = measure_errors(strokes, practice)
-    directions = seen.directions.copy()
+    directions, widths, speeds, paces = measure_errors(strokes, practice)
     known = ~np.isnan(directions)
     guessed = np.array([one.guessed for one in strokes]) & known
     tells = known | np.array([one.potted is not None for one in strokes])
-    at = choose_speed(seen.paces[tells])
-    more = grow_with_speed(seen.paces, at)
-    mixed, meant = weigh_guesses(directions[guessed], seen.widths[guessed], more[:, guessed])
+    at = choose_speed(paces[tells])
+    more = grow_with_speed(paces, at)
+    mixed, meant = weigh_guesses(directions[guessed], widths[guessed], more[:, guessed])
     strokes = list(strokes)
     for k in np.flatnonzero(guessed)[~meant].tolist():
         strokes[k] = replace(strokes[k], ball=None, pocket=None, potted=None, guessed=False)
@@ -147,11 +115,11 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
         log_l = weigh_errors(directions[sure], more[:, sure]) + mixed + weigh_outcomes(rest, at)
         weights = normalise(log_l + np.log(PRIOR)[:, None])
         direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
-        paces = np.concatenate([seen.paces[known], rest.paces])
-        if paces.max() >= SEVERAL * paces.min():
+        tried = np.concatenate([paces[known], rest.paces])
+        if tried.max() >= SEVERAL * tried.min():
             growth = estimate_growth(likeliest, n)
         aside = estimate_mean(directions[known] / more[int(likeliest.argmax()), known], unit)
-    v = seen.speeds[~np.isnan(seen.speeds)]
+    v = speeds[~np.isnan(speeds)]
     speed = None
     if len(v):
         speed = estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
@@ -160,7 +128,7 @@ def fit_errors(strokes: list[Recorded], practice: Practice, seed: int) -> Fit:
         raise refuse_what("strokes", "none that shows an error", f"must hold strokes {allowed}")
     found = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
     errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
-    return Fit(errors, weights, pots, strokes)
+    return errors, weights, pots, strokes
 
 
 def choose_speed(paces: Floats) -> float:
@@ -263,16 +231,9 @@ def estimate_mean(e: Floats, unit: float) -> Estimate | None:
     return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
 
 
-class Measurement(NamedTuple):
-    """What strokes tell of errors, (n,), NaN where they do not."""
-
-    directions: Floats  # errors, in a professional's standard deviations for a level cue at rest
-    widths: Floats  # ``CALLED`` in the same unit
-    speeds: Floats  # errors, in a professional's standard deviations
-    paces: Floats  # the cue speeds [m/s]; where nothing is known ``POT_SPEED``
-
-
-def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
+def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats, Floats]:
+    """What n strokes tell, NaN where they do not: errors of direction, in a professional's standard deviations for a level cue at
+    rest; ``CALLED`` in this unit; errors of speed in those of speed; cue speeds [m/s], ``POT_SPEED`` where nothing is known."""
     directions, widths, speeds = np.full((3, len(strokes)), np.nan)
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
@@ -309,7 +270,7 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> Measurement:
         own = paces[list(at_pots)]
         ends = np.quantile(own, OUTER, method="lower"), np.quantile(own, 1.0 - OUTER, method="higher")
         paces[list(at_pots)] = np.clip(own, *ends)
-    return Measurement(directions, widths, speeds, paces)
+    return directions, widths, speeds, paces
 
 
 def fit_to_room(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:

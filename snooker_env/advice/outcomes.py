@@ -2,14 +2,14 @@
 
 The visits that strokes leave, the player's or the other's, are played on by a fast search, with errors, many at once."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, fields
 from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._lib.check import integer
-from .._lib.types import Bools, Floats, Ints
+from .._lib.types import Bools, Floats, Ints, Place
 from ..game.balls import CUE
 from ..planning import Outcomes, Positions, clear_paths
 from ..planning.positions import PositionsLike
@@ -30,10 +30,98 @@ from .practice import (
     practice_of,
     start_from,
 )
-from .suggestions import Suggestion
+from .room import Room
 
 Z = 1.959964  # standard deviations of a 95 % interval
 OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suggestion(CueStroke):
+    """A stroke, what it does when played as intended, and its outcomes under execution errors.
+
+    Attributes
+    ----------
+    speed, aim, side, top, elevation, place
+        As in ``CueStroke``.
+    room : Room
+        How the cue finds room over rails and balls: ``elevation`` [rad], ``side`` and ``top`` as they are then played; whether
+        the cue is ``raised``, its tip ``moved``, because a cue of 45 degrees does not reach it, or the stroke ``unplayable``;
+        what it is ``over`` ("rail" or a ball), so far ``behind`` the cue ball's centre [m]; and ``words``. A free cue always
+        has room.
+    kind : {"pot", "contact", "safety", "escape", "in-off", "foul"}
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing; in a
+        frame, where this is judged, "safety"; "escape" if no straight path leads to a ball on. "in-off": it loses the cue
+        ball. "foul": any other foul.
+    ball, pocket, first : int
+        Id of the ball that the stroke pots without errors (if none, of the ball that it strikes first or plays away from);
+        the pocket, an index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
+    chance, chance_interval : float, (float, float)
+        Of a pot, the share of samples in which that ball went into that pocket without a foul; of another stroke, the share
+        without a foul. Wilson's 95 % interval of the chance; without noise, the chance itself twice.
+    points, points_interval : float, (float, float)
+        Expected points of the visit from this stroke on, continued by a fast search, with the 95 % interval of the
+        sampling error.
+    foul, in_off : float
+        Shares of the samples with a foul, and with the cue ball potted.
+    stops, spread : (float, float), float or None
+        Mean stopping point of the cue ball [m] in the samples in which it stayed on the table, and the root mean square
+        distance from that point [m]; None if it never stayed.
+    win, win_interval, against, replies, leaves, snookers : float, (float, float), float, float, float, float or None
+        Only of a frame (docs/play/advice.md). ``win``: the chance to win, with the 95 % interval of the sampling error.
+        ``against``: of the first stroke, the chance to win of the best stroke of the other kind. ``replies``, ``leaves``,
+        ``snookers``: how often the opponent pots next, their mean points, and how often they are snookered; None if the
+        opponent never comes to the table.
+    words : str
+        All of this in one line of text.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> suggestion = sn.advise(position, agent="search", noise="none", n=1)[0]
+    >>> suggestion.kind, suggestion.chance
+    ('pot', 1.0)
+    """
+
+    room: Room
+    kind: str
+    ball: int
+    pocket: int
+    first: int
+    chance: float
+    chance_interval: tuple[float, float]
+    points: float
+    points_interval: tuple[float, float]
+    foul: float
+    in_off: float
+    stops: Place | None
+    spread: float | None
+    words: str
+    win: float | None = None
+    win_interval: tuple[float, float] | None = None
+    against: float | None = None
+    replies: float | None = None
+    leaves: float | None = None
+    snookers: float | None = None
+
+    @property
+    def figure(self) -> float:
+        """The figure that orders strokes: in a frame the chance to win, else the points of a pot, or the share without a foul."""
+        return self.win if self.win is not None else self.points if self.kind == "pot" else self.chance
+
+    @property
+    def stroke(self) -> CueStroke:
+        """The stroke alone, a ``CueStroke``."""
+        return CueStroke.of({field.name: getattr(self, field.name) for field in fields(CueStroke)})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; pairs as lists."""
+        kept = {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
+        return kept | {"room": self.room.to_dict()}
+
+    def __str__(self) -> str:
+        return self.words
 
 
 class Trials(NamedTuple):
@@ -160,36 +248,12 @@ def _say_why(kind: str, chance: float, look: dict[str, Any]) -> str:
     return f"{reply and f', {reply}'}; win chance {say.percent(look['win'])}"
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Destinations:
-    """Where the balls of a stroke stop under execution errors; returned by ``destinations``.
-
-    Attributes
-    ----------
-    samples : int
-        How often the stroke was played.
-    cue, ball : numpy.ndarray
-        float64 (m, 2). Where the cue ball and the object ball stopped [m], in the samples in which they stayed on the
-        table, before respotting. The object ball is the one that the stroke hits first without errors; (0, 2) if none.
-    potted, in_off, foul, scored : float
-        Shares of the samples in which the object ball was potted, the cue ball was potted, there was a foul, points were
-        scored.
-    points : float
-        Mean points of the stroke.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import destinations
-    >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, noise="none")
-    >>> stops.samples, stops.cue.shape, stops.foul
-    (1, (1, 2), 0.0)
-    """
+class Destinations(NamedTuple):
+    """The fields are described by ``destinations``."""
 
     samples: int
-    cue: Floats = field(repr=False)
-    ball: Floats = field(repr=False)
+    cue: Floats
+    ball: Floats
     potted: float
     in_off: float
     foul: float
@@ -223,16 +287,18 @@ def destinations(
     Returns
     -------
     Destinations
-        ValueError if an argument is invalid, or there is no stroke to play.
+        ``samples``, how often the stroke was played; ``cue`` and ``ball``, float64 (m, 2), where the cue ball and the object
+        ball stopped [m] in the samples in which they stayed on the table, before respotting: the object ball is the one that
+        the stroke hits first without errors, (0, 2) if none; the shares ``potted`` (the object ball), ``in_off`` (the cue
+        ball), ``foul`` and ``scored``; the mean ``points``. ValueError if an argument is invalid, or there is no stroke to play.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.advice import destinations
     >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, samples=100)
-    >>> stops.samples, stops.cue.shape[1]
-    (100, 2)
+    >>> destinations(position, {"speed": 1.8, "aim": 0.8}, noise="none").cue.shape
+    (1, 2)
     """
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)

@@ -4,8 +4,7 @@ import base64
 import binascii
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from math import atan2, hypot, pi, radians, remainder
@@ -17,7 +16,7 @@ import numpy as np
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._lib.types import Bools, CueKind, Floats
-from ..game.balls import CUE, N_BALLS, BallOn, next_on
+from ..game.balls import CUE, N_BALLS, BallOn, mask_of_present, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
 from ..physics.cue import strike
@@ -69,12 +68,8 @@ class Recorded:
         The balls for the next stroke; ``over=True`` if there is none.
     scores : (int, int)
         In a frame, the scores of the player and of the opponent before the stroke. Default (0, 0).
-    cue : {"free", "real"}, optional
-        Whether rails and balls were in the way of the cue.
-    physics : str, dict or Physics, optional
-        The constants of the table, as of ``Physics.of``.
-    table : str or Table, optional
-        Its cushions and pockets.
+    cue, physics, table : {"free", "real"}, str, dict or Physics, str or Table, optional
+        Where it was played: whether rails and balls were in the way of the cue, the constants, the cushions and pockets.
 
     Examples
     --------
@@ -240,10 +235,10 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     ...     read_strokes(f"{folder}/mine.json")[0].potted
     True
     """
-    readers = {FORMAT: _from_strokes, REPLAY: _from_replay}
     if player is not None:
         integer("player", player, 0, 1)
-    strokes = read_document(path, {form: partial(one, player=player) for form, one in readers.items()})
+    readers = {FORMAT: _from_strokes, REPLAY: _from_replay}
+    strokes = read_document(path, {form: partial(read, player=player) for form, read in readers.items()})
     if not strokes:
         raise refuse("path", str(path), "must hold at least one stroke of the player")
     return strokes
@@ -273,24 +268,20 @@ def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, An
         raise refuse_what(str(path), what, f"must be a whole {form!r}") from None
 
 
-def strokes_of(
-    source: Any, *, player: int | None = None, intended: Sequence[CueStroke | None] | None = None
-) -> list[Recorded]:
-    """Return the recorded strokes of an environment that keeps its history, of its strokes, or of a replay.
+def strokes_of(source: Any, *, player: int | None = None) -> list[Recorded]:
+    """Return the recorded strokes of an environment that keeps its history, or of its strokes.
 
     Parameters
     ----------
-    source : environment, sequence of Played, or Replay
+    source : environment, or sequence of Played
         As ``snooker_env.replay`` takes it.
     player : int, optional
         In a frame, whose strokes, 0 or 1. Default None: all are of one player.
-    intended : sequence of CueStroke or None, optional
-        How each stroke of ``source`` was meant, of both players; None for a stroke of which this is not known.
 
     Returns
     -------
     list of Recorded
-        ValueError for bare shots, or if the length of ``intended`` differs.
+        ValueError for bare shots.
 
     Examples
     --------
@@ -302,11 +293,7 @@ def strokes_of(
     >>> strokes_of(env)[0].played is not None
     True
     """
-    kept = replay(source).to_dict()
-    if intended is not None and len(intended) != len(kept["strokes"]):
-        allowed = f"must be {len(kept['strokes'])}, one for each stroke"
-        raise refuse_what("intended", f"{len(intended)} strokes", allowed)
-    return _from_replay(kept, player, intended)
+    return _from_replay(replay(source).to_dict(), player)
 
 
 def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
@@ -314,22 +301,12 @@ def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]
         raise refuse("player", player, "must be left out: a file of strokes is of one player")
     made = []
     for k, one in enumerate(kept["strokes"]):
-        with _in_stroke(k):
+        with in_file(f"strokes[{k}]"):
             made.append(Recorded.from_dict(one))
     return made
 
 
-@contextmanager
-def _in_stroke(k: int) -> Iterator[None]:
-    try:
-        yield
-    except ValueError as error:
-        raise ValueError(f"strokes[{k}]: {error}") from None
-
-
-def _from_replay(
-    kept: Mapping[str, Any], player: int | None, intended: Sequence[CueStroke | None] | None = None
-) -> list[Recorded]:
+def _from_replay(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
     made = []
     if player is None and len({one["player"] for one in kept["strokes"]}) > 1:
         raise refuse("player", None, "must be 0 or 1: the replay is of two players")
@@ -341,15 +318,12 @@ def _from_replay(
         who, scores = integer(f"strokes[{k}].player", one["player"], 0, 1), before
         before = tuple((*one["score"], 0)[:2])
         if player is None or who == player:
-            with _in_stroke(k):
-                meant = None if intended is None else intended[k]
-                made.append(_of_replay(one, (scores[who], scores[1 - who]), meant, where))
+            with in_file(f"strokes[{k}]"):
+                made.append(_of_replay(one, (scores[who], scores[1 - who]), where))
     return made
 
 
-def _of_replay(
-    one: Mapping[str, Any], scores: tuple[int, int], intended: CueStroke | None, where: dict[str, Any]
-) -> Recorded:
+def _of_replay(one: Mapping[str, Any], scores: tuple[int, int], where: dict[str, Any]) -> Recorded:
     """A stroke of a replay, played on the table ``where``; the pot that was meant is guessed from the line of the stroke."""
     (start, here), (rest, left), fell = read_balls(one)
     word = one["ball_on"].replace(" ", "_")
@@ -362,18 +336,18 @@ def _of_replay(
     else:
         after = None if left[1:].any() else Position(over=True)
     played = {name: one["cue"][name] for name in CUE_PARTS}
-    line = direction_of(played, Physics.of(where["physics"])) if intended is None else intended.aim
+    line = direction_of(played, Physics.of(where["physics"]))
     meant = None if word == "free_ball" else call_pot(position, line)
     ids = np.flatnonzero(here).tolist()
     # a position numbers its reds anew
     reds = {ball: 1 + k for k, ball in enumerate(ball for ball in ids if 1 <= ball <= 15)}
     down = {(reds.get(ball, ball), into) for ball, into in fell.items()}
     ball, pocket = (None, None) if meant is None else meant
-    pot = {"ball": ball, "pocket": pocket, "guessed": ball is not None and intended is None}
+    pot = {"ball": ball, "pocket": pocket, "guessed": ball is not None}
     pot["potted"] = None if ball is None else (ball, pocket) in down and not one["penalty"]
     came = {"points": one["points"], "penalty": one["penalty"], "after": after, "scores": scores}
     came |= {**where, "cue": one.get("cue_kind")}
-    return Recorded(position=position, intended=intended, played=played, **pot, **came)
+    return Recorded(position=position, played=played, **pot, **came)
 
 
 def read_balls(one: Mapping[str, Any]) -> tuple[tuple[Floats, Bools], tuple[Floats, Bools], dict[int, int]]:
@@ -404,8 +378,8 @@ def _present(ids: Sequence[int]) -> Any:
 
 def _position(places: Floats, here: Any, on: str | None) -> Position:
     """A position of arrays; ``on`` None: the lowest ball."""
-    mask = sum(1 << ball for ball in np.flatnonzero(here).tolist())
-    code = BallOn(next_on(mask)) if on is None else BallOn[choice("ball_on", on.upper(), BallOn.__members__)]
+    lowest = next_on(mask_of_present(here))
+    code = lowest if on is None else BallOn[choice("ball_on", on.upper(), BallOn.__members__)]
     return Position.of_arrays(places, here, np.array([code, 0, 0, 0, 0]))
 
 

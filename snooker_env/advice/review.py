@@ -22,11 +22,10 @@ from ..replays.encode import noise_data, table_from
 from ..tasks.noise import LEVELS, Noise, NoiseLike
 from .ask import choose_strokes, name_player
 from .intentions import intend
-from .outcomes import Trials, judge_strokes
+from .outcomes import Suggestion, Trials, judge_strokes
 from .practice import one_position, practice_of
 from .recorded import CUE_PARTS, call_pot, direction_of, read_balls
 from .stroke_words import POCKET_WORDS, ball_name, percent
-from .suggestions import Suggestion
 
 ROUGH, FEW = "tactician_100", 50
 """Who is asked in the first look at all strokes, and how often each is played."""
@@ -239,27 +238,24 @@ def go_through(
         how |= {"result": shares[-1] if winner is None else 1.0 - winner, "between": between}
         return Review(strokes=strokes, sides=(sum_up(0), sum_up(1)), win_chance=shares, **how)
 
-    def judge_one(turn: Turn, agent: Player, trials: Trials, rough: bool) -> Reviewed:
-        return _judge(turn, agent, errors, trials, told.get(turn.number), rough)
-
     yield 0, 2 * len(mine), sum_all()
     for done, one in enumerate(mine, 1):
-        found[one.number] = judge_one(one, player_of(ROUGH), Trials(FEW, 0, seed + 1), True)
+        found[one.number] = _judge(one, player_of(ROUGH), errors, Trials(FEW, 0, seed + 1), told, True)
         yield done, 2 * len(mine), sum_all()
     for done, rough in enumerate(sum_all().costliest, 1 + len(mine)):
-        found[rough.number] = judge_one(turns[rough.number - 1], asked, trials, False)
+        found[rough.number] = _judge(turns[rough.number - 1], asked, errors, trials, told, False)
         yield done, 2 * len(mine), sum_all()
 
 
 def _judge(
-    turn: Turn, agent: Player, noise: Noise, trials: Trials, luck: float | None, rough: bool
+    turn: Turn, agent: Player, noise: Noise, trials: Trials, luck: Mapping[int, float], rough: bool
 ) -> Reviewed:
-    """A stroke beside the agent's best, both under the same errors."""
+    """A stroke beside the agent's best, both under the same errors; ``luck`` by number, where it is known."""
     practice, at = practice_of(noise, turn.options, of_frames=True), one_position(turn.seen[:1])
     ((best,), _) = choose_strokes(practice, agent, at, 1, trials, rivals=0)
     (meant,) = judge_strokes(practice, intend(practice, at, [turn.meant]), trials)
     after = float(practice.judge.value_of(lead_of(at), turn.seen[1:].known_to(practice.options.rules))[0, 0])
-    execution = meant.figure - after if luck is None else -luck
+    execution = -luck[turn.number] if turn.number in luck else meant.figure - after
     pot = None if meant.kind == "pot" else call_pot(at[0], turn.meant.aim, MISSED)
     return Reviewed(
         number=turn.number,

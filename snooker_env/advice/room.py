@@ -18,28 +18,7 @@ RAIL = "rail"  # what is in the way if no ball is
 
 @dataclass(frozen=True, kw_only=True)
 class Room:
-    """How the cue finds room for a stroke, execution errors apart. A free cue always has room.
-
-    Attributes
-    ----------
-    elevation, side, top : float
-        Elevation [rad] and tip offsets over R at which the stroke is played: its own, or what rails and balls leave.
-    raised, moved, unplayable : bool
-        Whether the cue is raised; whether the tip is moved, because a cue of 45 degrees does not reach the point that was
-        meant; whether not even this helps, so that nobody can play the stroke.
-    over : str or None
-        The obstacle: "rail", or the name of a ball; None if there is none.
-    behind : float
-        Distance of the obstacle behind the cue ball's centre, along the cue [m], to a rail's edge or a ball's centre; 0 if
-        there is none.
-
-    Examples
-    --------
-    >>> from snooker_env.advice import Room
-    >>> way = {"raised": True, "moved": False, "unplayable": False, "over": "rail", "behind": 0.03}
-    >>> Room(elevation=0.21, side=0.0, top=0.0, **way).words
-    'cue raised to 12 degrees over the rail'
-    """
+    """How the cue finds room for a stroke, execution errors apart; ``Suggestion`` describes the fields."""
 
     elevation: float
     side: float
@@ -48,7 +27,7 @@ class Room:
     moved: bool
     unplayable: bool
     over: str | None
-    behind: float
+    behind: float  # 0 if there is nothing in the way
 
     @property
     def words(self) -> str:

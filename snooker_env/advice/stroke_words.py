@@ -31,14 +31,9 @@ def rolling(speed: float, top: float, distance: float, physics: Physics) -> floa
     brake = physics.mu_s * physics.g
     v, roll = speed, 2.5 * top * speed
     way = 1.0 if roll < v else -1.0  # too much top: the rotation falls, the ball gains speed
-    slip = abs(v - roll)
-    until = slip / (3.5 * brake)
-    t = until
-    if way > 0.0:
-        inside = v * v - 2.0 * brake * distance
-        t = min(until, (v - sqrt(inside)) / brake) if inside > 0.0 else until
-    else:
-        t = min(until, (sqrt(v * v + 2.0 * brake * distance) - v) / brake)
+    t, inside = abs(v - roll) / (3.5 * brake), v * v - way * 2.0 * brake * distance
+    if inside > 0.0:  # else it rolls before it arrives
+        t = min(t, way * (v - sqrt(inside)) / brake)
     return (roll + way * 2.5 * brake * t) / max(v - way * brake * t, 1e-9)
 
 

@@ -217,7 +217,7 @@ def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         stroke = take_stroke(session, fields)
         stops = destinations(session.as_visit(), stroke, options=session.options, **errors)
         places = {name: pack(getattr(stops, name), "f4") for name in ("cue", "ball")}
-        return _paths(_play_exactly(session, stroke)) | vars(stops) | places
+        return _paths(_play_exactly(session, stroke)) | stops._asdict() | places
 
 
 def _room(service: Service, fields: dict[str, Any]) -> dict[str, Any]:

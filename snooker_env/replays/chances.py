@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from .._lib.check import number, refuse, refuse_what
+from .._lib.check import refuse_what
 from .._lib.types import Bools, Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, mask_of_present
@@ -34,25 +34,6 @@ class Standing(NamedTuple):
     frame: Frame
     positions: Floats
     on_table: Bools
-
-
-def check_judge(judge: object) -> ChanceJudge | None:
-    """A judge, or None for none."""
-    if judge is not None and not isinstance(judge, ChanceJudge):
-        allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'
-        raise refuse_what("judge", f"a {type(judge).__name__}", allowed)
-    return judge
-
-
-def check_luck(luck: Sequence[float] | None, strokes: int, judged: bool) -> tuple[float, ...] | None:
-    """The luck of so many strokes of a frame, or None for not known."""
-    if luck is None:
-        return None
-    if not judged:
-        raise refuse("luck", luck, "must be None: without a judge a replay holds no chances to win")
-    if not isinstance(luck, list | tuple) or len(luck) != strokes:
-        raise refuse("luck", luck, f"must be {strokes} numbers, one for each stroke")
-    return tuple(number(f"luck[{k}]", one, -1.0, 1.0) for k, one in enumerate(luck))
 
 
 def win_chances(judge: ChanceJudge, standings: Sequence[Standing]) -> list[float]:

@@ -6,19 +6,19 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
-from .._lib.check import choice, refuse, refuse_what
+from .._lib.check import choice, number, refuse, refuse_what
 from .._lib.files import write_atomic
 from .._lib.types import Bytes, Environment
-from ..physics.table import Table, TableLike
+from ..physics.table import Table
 from ..planning import Position
 from ..render.scene import scene_data
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from .chances import ChanceJudge, check_judge, check_luck, standings_of, win_chances
+from .chances import ChanceJudge, standings_of, win_chances
 from .encode import encode_stroke, physics_data, table_data
 from .web import WEB, table_js
 
@@ -39,8 +39,6 @@ class Replay:
         Title of the page.
     players : iterable of str, optional
         Two names for a frame, one for a visit; default: "Player 1" and "Player 2", or "Player".
-    table : str, Table or None, optional
-        The table of the strokes; default: that of the shots, or "match".
     judge : object with ``chance_to_win``, optional
         Estimates each player's chance to win a frame, as ``snooker_env.player("tactician").at(env)`` does, with the errors
         of ``env``. ValueError if the strokes are not of a frame. Default None: no chances are shown.
@@ -51,7 +49,7 @@ class Replay:
     Attributes
     ----------
     strokes, title, players, table
-        Tuple of Shot or Played, str, tuple of names (empty for bare shots) and ``Table``.
+        Tuple of Shot or Played, str, tuple of names (empty for bare shots), and the ``Table`` of the shots or "match".
     win_chance : tuple of float or None
         The first player's chance to win, before the first stroke and after each. None without a judge.
     luck : tuple of float or None
@@ -72,7 +70,6 @@ class Replay:
         *,
         title: str = "",
         players: Iterable[str] | None = None,
-        table: TableLike = None,
         judge: ChanceJudge | None = None,
         luck: Sequence[float] | None = None,
     ):
@@ -90,26 +87,32 @@ class Replay:
         many = 0 if judged is None else len(judged.scores)
         self.players: tuple[str, ...] = check_players(players, many) or USUAL[many]
         first = self.shots[0].physics
+        tables = [shot.table for shot in self.shots if shot.table is not None]
+        self.table: Table = tables[0] if tables else Table.preset("match")
         for k, shot in enumerate(self.shots):
             if (shot.physics.R, shot.physics.spin_decel) != (first.R, first.spin_decel):
                 allowed = "must have the R and the spin_decel of the first"
                 raise refuse_what(f"strokes[{k}]", "a shot with other physics", allowed)
-        tables = [shot.table for shot in self.shots if shot.table is not None]
-        if table is not None:
-            self.table: Table = Table.of(table)
-        else:
-            self.table = tables[0] if tables else Table.preset("match")
-            for k, other in enumerate(tables):
-                parts = (
-                    (getattr(one, name) for one in (other, self.table)) for name in ("noses", "jaws", "falls")
-                )
-                if other is not self.table and not all(np.array_equal(*pair) for pair in parts):
-                    allowed = "must be on the table of the first, or pass table=..."
+            own, ours = shot.table, self.table
+            if own is None or own is ours:
+                continue
+            for part in ("noses", "jaws", "falls"):
+                if not np.array_equal(getattr(own, part), getattr(ours, part)):
+                    allowed = "must be on the table of the first"
                     raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
+        if judge is not None and not isinstance(judge, ChanceJudge):
+            allowed = 'must have chance_to_win(positions), as snooker_env.player("tactician").at(env) has'
+            raise refuse_what("judge", f"a {type(judge).__name__}", allowed)
         self.win_chance: tuple[float, ...] | None = None
-        if (asked := check_judge(judge)) is not None:
-            self.win_chance = tuple(win_chances(asked, standings_of(self.strokes)))
-        self.luck: tuple[float, ...] | None = check_luck(luck, len(self.strokes), asked is not None)
+        if judge is not None:
+            self.win_chance = tuple(win_chances(judge, standings_of(self.strokes)))
+        self.luck: tuple[float, ...] | None = None
+        if luck is not None:
+            if judge is None:
+                raise refuse("luck", luck, "must be None: without a judge a replay holds no chances to win")
+            if not isinstance(luck, list | tuple) or len(luck) != len(self):
+                raise refuse("luck", luck, f"must be {len(self)} numbers, one for each stroke")
+            self.luck = tuple(number(f"luck[{k}]", one, -1.0, 1.0) for k, one in enumerate(luck))
 
     @property
     def shots(self) -> list[Shot]:
@@ -162,9 +165,9 @@ class Replay:
 
         ``fps`` and ``speed`` (a multiple of real time) lie in (0, 1000], else ValueError; ``size`` is width and height
         [pixels]. ImportError without pygame."""
-        from .film import film_strokes, frames
+        from .film import frames
 
-        return frames(film_strokes(self), fps, speed, size)
+        return frames(self, fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
@@ -172,25 +175,20 @@ class Replay:
         ``.html`` is the page, ``.json`` the data. ``.mp4`` and ``.gif`` are films and need the extra ``render``; ``film`` holds
         ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF has 15 and 640 x 360 by default). ValueError for another suffix,
         OSError if the file cannot be written, ImportError without the extra."""
-        target = read_path("path", path)
+        if not isinstance(path, str | PathLike):
+            raise refuse("path", path, "must be a str or a Path")
+        target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
             from .film import write_film
 
-            write_film(self.frames, target, **film)
+            write_film(self, target, **film)
             return target
         if film:
             raise refuse("path", str(path), f"must end in .mp4 or .gif with {', '.join(film)}")
         text = self.html() if suffix == ".html" else json.dumps(self.to_dict(), allow_nan=False)
         write_atomic(target, text)
         return target
-
-
-def read_path(field: str, path: object) -> Path:
-    """``path`` as a Path, else ValueError."""
-    if not isinstance(path, str | PathLike):
-        raise refuse(field, path, "must be a str or a Path")
-    return Path(path)
 
 
 def check_text(field: str, text: object) -> str:
@@ -212,33 +210,27 @@ def check_players(players: object, many: int) -> tuple[str, ...]:
     return tuple(check_text("players", name) for name in names)
 
 
-Source: TypeAlias = Replay | Shot | Played | Sequence[Shot | Played] | Position | Environment
-"""What can be shown as a replay."""
-
-
 def replay(
-    source: Source,
+    source: Shot | Played | Sequence[Shot | Played] | Position | Environment,
     path: str | Path | None = None,
     *,
     title: str = "",
     players: Iterable[str] | None = None,
-    table: TableLike = None,
     judge: ChanceJudge | None = None,
 ) -> Replay:
     """Make a replay of what was played, and write it to a file if ``path`` is given.
 
     Parameters
     ----------
-    source : Shot, Played, sequence of Shot or Played, Position, Replay, or environment
+    source : Shot, Played, sequence of Shot or Played, Position, or environment
         * A ``Shot`` of ``sn.simulate``, or several in the order played.
         * The strokes of an episode: ``env.history``; or the environment itself, wrapped or not, if it has a render mode or
           its ``keep_history`` was set to True.
-        * A ``Position``, shown as it stands.
-        * A ``Replay``, copied with the other arguments applied.
+        * A ``Position``, shown as it stands on the table "match".
     path : str or Path, optional
         A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
-    title, players, table, judge
-        As in ``Replay``. A copied ``Replay`` keeps the chances of its judge.
+    title, players, judge
+        As in ``Replay``.
 
     Returns
     -------
@@ -256,33 +248,28 @@ def replay(
     >>> sn.replay(env, title="one stroke")
     Replay(1 strokes, 'one stroke')
     """
-    if isinstance(source, Replay):
-        title, players, table = title or source.title, players or source.players, table or source.table
-    strokes = source.strokes if isinstance(source, Replay) else _strokes(source, table)
-    made = Replay(strokes, title=title, players=players, table=table, judge=judge)
-    if isinstance(source, Replay) and judge is None:
-        made.win_chance, made.luck = source.win_chance, source.luck
+    made = Replay(_strokes(source), title=title, players=players, judge=judge)
     if path is not None:
         made.save(path)
     return made
 
 
-def _strokes(source: Source, table: TableLike) -> list[Shot | Played]:
+def _strokes(source: Any) -> list[Shot | Played]:
     if isinstance(source, Shot | Played):
         return [source]
     if isinstance(source, list | tuple):
         return list(source)
     if isinstance(source, Position):  # the shot in which nothing moves
         places, on_table, _ = source.arrays()
-        nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
-        return [simulate(places, nothing[:, :2], nothing, table, on_table=on_table)]
+        nothing = np.zeros((len(places), 3))
+        return [simulate(places, nothing[:, :2], nothing, "match", on_table=on_table)]
     env: Any = getattr(source, "unwrapped", source)
     if not (hasattr(env, "history") and hasattr(env, "keep_history")):
-        allowed = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay"
+        allowed = "must be a Shot, a list of shots or of strokes of env.history, a Position"
         allowed += ", or an environment that keeps its history"
         raise refuse_what("source", f"a {type(source).__name__}", allowed)
     if not env.keep_history:
-        words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay"
+        words = "must have env.unwrapped.keep_history = True set before it plays"
         raise refuse_what("source", "an environment that keeps no history", words)
     if not env.history:
         what = "an environment without a stroke since its reset"

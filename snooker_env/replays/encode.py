@@ -1,7 +1,6 @@
 """How is a stroke encoded for a browser? As the closed forms of its phases of motion (docs/play/replay.md).
 
-The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the
-browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32."""
+Motion has 64 bits, so that the browser computes the places of ``Shot.at``; spins, which are only displayed, 32."""
 
 import base64
 from collections.abc import Mapping

@@ -1,7 +1,7 @@
 """How does a replay become a film? Pictures go to the encoder one by one, so only one is in memory."""
 
 import subprocess
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -32,15 +32,6 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def film_strokes(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
-    """For each stroke of a ``Replay`` its film, and the table after it with the referee's words."""
-    judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
-    its = iter(bars(judged, replay.players, replay.win_chance))
-    for stroke in replay.strokes:
-        during, after = next(its) if isinstance(stroke, Played) else (None, None)
-        yield film_stroke(replay.table, stroke, during, after, "" if during else replay.title)
-
-
 def film_stroke(
     table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
 ) -> tuple[Film, Scene]:
@@ -54,31 +45,31 @@ def film_stroke(
     return film, replace(still, ball_radius=last.ball_radius)
 
 
-def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Size) -> Iterator[Bytes]:
+def frames(replay: "Replay", fps: float, speed: float, size: Size) -> Iterator[Bytes]:
+    """The pictures of ``Replay.frames``: of each stroke, and of the table after it with the referee's words."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = (number(name, x, 0.0, 1000.0, open_low=True) for name, x in (("fps", fps), ("speed", speed)))
-    for film, after in films:
+    judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
+    its = iter(bars(judged, replay.players, replay.win_chance))
+    for stroke in replay.strokes:
+        during, after = next(its) if isinstance(stroke, Played) else (None, None)
+        film, still = film_stroke(replay.table, stroke, during, after, "" if during else replay.title)
         for picture in film.scenes(fps, speed):
             yield rgb_array(picture, size=size)
-        yield from [rgb_array(after, size=size)] * round(PAUSE * fps)
+        yield from [rgb_array(still, size=size)] * round(PAUSE * fps)
 
 
 def write_film(
-    pictures_of: Callable[..., Iterator[Bytes]],
-    target: Path,
-    *,
-    fps: float | None = None,
-    speed: float = 1.0,
-    size: Size | None = None,
+    replay: "Replay", target: Path, fps: float | None = None, speed: float = 1.0, size: Size | None = None
 ) -> None:
-    """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
+    """Write ``Replay.frames`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else fps
     sides = size if isinstance(size, tuple | list) else ()
     if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
         raise refuse("size", size, "must be (width, height), both even, as video encoders require")
-    pictures = pictures_of(fps=fps, speed=speed, size=size)
+    pictures = frames(replay, fps, speed, size)
     write_atomic(target, lambda path: _encode(pictures, path, fps, size))
 
 

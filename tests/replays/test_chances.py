@@ -1,6 +1,5 @@
 """Is the chance to win in a replay that of each position of the frame, from the first player's side?"""
 
-import json
 import re
 
 import numpy as np
@@ -116,32 +115,12 @@ def test_the_first_stroke_is_undone_whatever_it_was(frame):
     assert {(True, False), (False, True), (False, False)} <= seen
 
 
-def test_what_nobody_wins_is_refused(frame, tmp_path):
+def test_what_nobody_wins_is_refused(frame):
     env, _ = frame
     strokes, shot = visit(3, 2), env.history[0].shot
     refused(lambda: sn.replay(strokes, judge=Judge()), "strokes[0]", "visit", "must be of a frame")
     refused(lambda: sn.replay([shot], judge=Judge()), "strokes[0]", "bare shot", "must be of a frame")
     refused(lambda: sn.replay(env, judge=3), "judge", "int", "must have chance_to_win")
-    made = lambda env: sn.RecordReplay(env, tmp_path / "new", judge=Judge())  # noqa: E731
-    refused(lambda: made(sn.SnookerEnv()), "judge", "Judge", "nobody wins a visit")
-    refused(
-        lambda: sn.RecordReplay(sn.SnookerEnv(**GAME), tmp_path / "new", judge=3),
-        "judge",
-        "int",
-        "chance_to_win",
-    )
-    assert not (tmp_path / "new").exists()
-
-
-def test_recorded_episodes_are_judged(tmp_path):
-    env = sn.SnookerEnv(**GAME, max_strokes=4)
-    recorded = sn.RecordReplay(env, tmp_path, suffix=".json", judge=sn.player("tactician").at(env))
-    recorded.reset(seed=1)
-    while not any(recorded.step(np.zeros(env.action_space.shape, np.float32))[2:4]):
-        pass
-    data = json.loads(recorded.paths[0].read_text())
-    assert len(data["win_chance"]) == len(data["strokes"]) + 1
-    assert all(0.0 < chance < 1.0 for chance in data["win_chance"][:-1])
 
 
 def test_the_luck_of_a_game_is_that_of_its_end():
@@ -193,7 +172,7 @@ def test_luck_stands_beside_chances_alone(frame):
     n = len(env.history)
     luck = [0.1] * n
     told = sn.Replay(env.history, judge=Judge(), luck=luck)
-    assert sn.replay(told, title="again").to_dict()["luck"] == luck == list(told.luck)
+    assert told.to_dict()["luck"] == luck == list(told.luck)
     assert sn.replay(env, judge=Judge()).luck is None
     refused(lambda: sn.Replay(env.history, luck=luck), "luck", "[0.1", "must be None: without a judge")
     refused(

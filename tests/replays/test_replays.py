@@ -5,7 +5,6 @@ import json
 import re
 from itertools import pairwise
 
-import gymnasium
 import numpy as np
 import pytest
 
@@ -208,60 +207,16 @@ next(sn.replay(one).frames(fps=None)) | fps | None | must be
 sn.replay(one).save(folder / "a.mp4", size=(321, 180)) | size | (321, 180) | both even
 sn.replay(one).save(folder / "a.gif", fps=0) | fps | 0 | must be
 sn.replay(one).save(folder / "a.gif", speed=-1) | speed | -1 | must be
-sn.RecordReplay(env, None) | folder | None | must be a str or a Path
-sn.RecordReplay(env, folder, 3) | episode_trigger | 3 | must be None
-sn.RecordReplay(env, folder, players=["a", "b"]) | players | 'a', 'b' | one for a visit
-sn.RecordReplay(env, folder, name_prefix="a/b") | name_prefix | a/b | without folders
-sn.RecordReplay(env, folder, suffix=".txt") | suffix | .txt | .html
-sn.RecordReplay(gymnasium.make("CartPole-v1"), folder) | env | CartPoleEnv | Snooker-v0
 """
 
 
 def test_wrong_arguments_are_refused_and_no_file_is_left(strokes, tmp_path):
     still = [(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]
-    names = {"sn": sn, "gymnasium": gymnasium, "folder": tmp_path, "env": made(), "one": strokes[0]}
+    names = {"sn": sn, "folder": tmp_path, "one": strokes[0]}
     names |= {"other": sn.simulate(*still, table="tight")}
     names |= {"slower": sn.simulate(*still, physics={"spin_decel": 5.0})}
     refuse_each(WRONG, names)
     assert list(tmp_path.iterdir()) == []
-
-
-def made():
-    return gymnasium.make("Snooker-v0", action="discrete")
-
-
-def test_the_wrapper_writes_each_wanted_episode(tmp_path):
-    env = sn.RecordReplay(made(), tmp_path / "new", lambda k: k != 1, suffix=".json")
-    lengths = []
-    for k in range(3):
-        env.reset(seed=k)
-        ended = False
-        while not ended:
-            ended = env.step(67)[2]
-        lengths.append(len(env.unwrapped.history))
-    env.reset(seed=9)  # an episode without a stroke gives no file
-    env.close()
-    assert [p.name for p in env.paths] == ["snooker-episode-0.json", "snooker-episode-2.json"]
-    assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
-
-
-def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
-    for seed in (1, 2):
-        env.reset(seed=seed)
-        env.step(67)
-    env.close()
-    assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
-
-
-def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
-    env.reset(seed=1)
-    ends = 0
-    while ends < 3:
-        _, _, terminated, truncated, _ = env.step(67)
-        ends += terminated or truncated
-    assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
 
 
 # Score bars and the referee's words follow the ``Frame`` after each stroke

@@ -66,8 +66,7 @@ AT = """({replay, times, names}) => {
 
 def in_browser(page, made, times, names):
     """[(times, names, balls)] of shots of one game as the browser evaluates them."""
-    table = GAMES[made[0][0]][0]
-    replay = sn.replay([shot for _, shot, _, _ in made], table=table).to_dict()
+    replay = sn.replay([shot for _, shot, _, _ in made]).to_dict()
     found = page.evaluate(AT, {"replay": replay, "times": [pack(t, "f8") for t in times], "names": names})
     return [doubles(text).reshape(len(t), len(names), -1) for text, t in zip(found, times, strict=True)]
 
