@@ -109,12 +109,12 @@ def find_episode(args: argparse.Namespace) -> tuple[SnookerEnv, int, list[str]]:
 
 def watch(args: argparse.Namespace, film: dict[str, Any]) -> None:
     env, seed, names = find_episode(args)
-    made, where, judge = f"{names[0]}: {env.points} points", f"table {seed}, layout {args.layout}", None
+    made, where = f"{names[0]}: {env.points} points", f"table {seed}, layout {args.layout}"
     if args.frame:
         scores = env.tables.standing(0)["scores"]
         made, where = f"{names[0]} {scores[0]} - {scores[1]} {names[1]}", f"frame {seed}"
-        judge = player(TACTICIAN).at(env)
     title = f"{' - '.join(names)}, {args.noise}'s errors, {where.split(',')[0]}"  # without the result
+    judge: Any = player(TACTICIAN).at(env) if args.frame else None
     played = replay(env, title=title, players=names, judge=judge)
     for k, stroke in enumerate(played.to_dict()["strokes"], 1):
         speed, side, top = (stroke["cue"][name] for name in ("speed", "side", "top"))
