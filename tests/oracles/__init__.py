@@ -3,7 +3,7 @@ imports them.
 
 ``ball_ball``        one frictional impact of two balls, to about 1e-12 of the incoming speed.
 ``ball_cushion``     one frictional impact of a ball on a cushion, to about 1e-12.
-``march``            how the float oracles pass an impact's changes of slip and stick; ``vectors`` is their arithmetic.
+``march``            how the float oracles pass an impact's changes of slip and stick, and their vectors.
 ``moreau``           the same impacts by another method, to about 1e-9; and of a ball that comes down on another.
 ``flight_3d``        a whole shot, with balls that fly or do not, on a table or unbounded cloth, by small fixed steps of the forces.
 ``cue_clearance``    how near a cue comes to rails and balls, by spheres along its axis.

@@ -109,8 +109,7 @@ def _slate(x, y, z, fall, edge):
 
 @numba.njit
 def _push(v, w, n, p, mu):
-    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w,
-    held."""
+    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w, held."""
     v = (v[0] - p * n[0], v[1] - p * n[1], v[2] - p * n[2])
     sx = v[0] + R * (w[1] * n[2] - w[2] * n[1])
     sy = v[1] + R * (w[2] * n[0] - w[0] * n[2])
@@ -183,8 +182,7 @@ def trace(s, jaws, fall, m, dt, n):
 
 @numba.njit
 def _approach(s, jaws, fall, m, dt):
-    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or
-    away."""
+    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or away."""
     while True:
         dx, dy = s[0] - fall[0], s[1] - fall[1]
         reach = math.sqrt(s[3] ** 2 + s[4] ** 2) * dt + CLEAR
