@@ -363,11 +363,6 @@ def _run_to_contact(balls, time, into_step, dt, noses, jaws, falls, m):
 # ---------------------------------------------------------------- impacts of bodies that are free or fixed
 
 
-def rub(v, w, p, mu, R):
-    """Velocity and spin after the bed's normal impulse p has rubbed: Coulomb's law on the slip of the lowest point."""
-    return _rubbed(v, w, -UP, mu * p, R)
-
-
 def _rubbed(v, w, m, most, R):
     """Friction of at most ``most`` at R m, m the unit vector to the contact, on one free ball."""
     slip = v + R * np.cross(w, m)
@@ -452,7 +447,7 @@ class _Shot:
         """Off the bed or the rail's top at -v_z."""
         down = -v[2]
         up = self.e_t * down if self.e_t * down >= SETTLE else 0.0
-        v, w = rub(v, w, down + up, self.p.mu_s, self.p.R)
+        v, w = _rubbed(v, w, -UP, self.p.mu_s * (down + up), self.p.R)
         return np.array([v[0], v[1], up]), w
 
     def thrown(self, v, w, press):
@@ -460,7 +455,7 @@ class _Shot:
         up = self.e_t * press
         if up < SETTLE:
             return np.array([v[0], v[1], 0.0]), w
-        v, w = rub(v, w, up, self.p.mu_s, self.p.R)
+        v, w = _rubbed(v, w, -UP, self.p.mu_s * up, self.p.R)
         return np.array([v[0], v[1], up]), w
 
     def lifted(self, v, w, press=0.0):

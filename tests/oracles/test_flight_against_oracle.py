@@ -131,9 +131,9 @@ def test_an_impact_from_above_is_the_oracles():
         law = Law(physics.pack(), contact.REFERENCE, 0)
         one = collide(*map(tuple, (v[0], w[0], v[1], w[1], n)), law, physics.e_b, np.zeros(WORK))
         mu = physics.friction_law
-        its = moreau_tilted(v[0], w[0], v[1], w[1], n, e=physics.e_b, mu=mu, mu_s=physics.mu_s, R=R)
-        assert one[5]
-        for mine, other, scale in zip(one[:4], its[:4], (1.0, R, 1.0, R), strict=True):
+        *its, press = moreau_tilted(v[0], w[0], v[1], w[1], n, e=physics.e_b, mu=mu, mu_s=physics.mu_s, R=R)
+        assert one[5] and one[4] == pytest.approx(max(0.0, press), abs=2e-6)
+        for mine, other, scale in zip(one[:4], its, (1.0, R, 1.0, R), strict=True):
             np.testing.assert_allclose(
                 np.multiply(mine, scale), np.multiply(other, scale), atol=2e-6, err_msg=str(k)
             )

@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from benchmarks.pockets.windows import CORNER, MIDDLE, Paths, alone, strokes, windows
 
-from .pocket_3d import POTTED, UNDECIDED, R, at_rest, default_step, fates, pocket, stiff, trace
+from .pocket_3d import POTTED, UNDECIDED, G, R, at_rest, default_step, fates, pocket, stiff, trace
 
 MATCH, PHYSICS = sn.Table.preset("match"), sn.Physics()
 HALF = {MIDDLE: 0.055, CORNER: 0.04}
@@ -35,6 +35,18 @@ def test_half_the_step_gives_the_same_path(index, speed):
             trace(state, jaws, fall, m, dt, round(0.15 / speed / dt))
         ends.append(states[:, :3])
     assert np.abs(ends[0] - ends[1]).max() <= 5e-4
+
+
+@pytest.mark.parametrize("speed", [0.6, 1.0])
+def test_a_ball_faster_than_the_root_of_g_r_flies_from_the_edge(speed):
+    """From a circle so large that its edge is straight: x = 0, the slate at x < 0."""
+    assert speed > math.sqrt(G * R)
+    m, edge, no_jaws = stiff(1.0), np.array([1e3, 0.0, 1e3]), np.zeros((0, 7))
+    (state,) = at_rest([[-1e-4, 0.0]], [[speed, 0.0]], [[0.0, speed / R, 0.0]], m, 0)
+    steps = round(0.05 / default_step(m))
+    trace(state, no_jaws, edge, m, default_step(m), steps)
+    x = speed * steps * default_step(m) - 1e-4
+    assert state[[0, 2]] == pytest.approx([x, R - 0.5 * G * (x / speed) ** 2], abs=3e-5)
 
 
 def window(index, angle, speed, rolling, nearer=0.0, grid=1e-3, halvings=2):

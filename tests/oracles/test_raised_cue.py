@@ -1,11 +1,11 @@
 """Is the strike of a raised cue right? A ball that bounces in three dimensions, laws, and shots.
 
-``flight_3d`` bounces the ball, on a bed with a restitution that the package's model without flight does not know. The ball
-comes to rest where the model's does, whatever the restitution, as long as its slip
-outlasts the bounces: the bed gives V sin(elevation) and gravity's impulse in all, friction is mu_s of both
-against a slip that keeps its direction, and over each hop the two ways of giving it move the ball equally far.
-If the slip ends before, two things are left: a triangle (``behind``), and that a ball in the air
-is not slowed by the rolling resistance, so that it runs on at its rolling speed for the rest of the bounces.
+``flight_3d`` bounces the ball on a bed with a restitution, which the model without flight does not know. The ball comes
+to rest where the model's does, whatever the restitution, as long as its slip outlasts the bounces: the bed gives
+V sin(elevation) and gravity's impulse in all, friction is mu_s of both against a slip that keeps its direction, and over
+each hop the two ways of giving it move the ball equally far. If the slip ends before, two things are left: a triangle
+(``behind``), and that a ball in the air is not slowed by the rolling resistance, so that it runs on at its rolling speed
+for the rest of the bounces.
 """
 
 import itertools
