@@ -7,8 +7,8 @@ Every key of ``expect`` is compared with what the code answers; a key, a field o
 understood makes the case fail, so that nothing passes unread.
 """
 
-import ast
 import json
+import re
 import sys
 
 from snooker_env.game import balls
@@ -272,25 +272,13 @@ def best_break(free_ball):
     return frame.scores[0]
 
 
-def value_of(formula):
-    """The value of a formula of numbers, + - * and brackets."""
-
-    def value(node):
-        if isinstance(node, ast.BinOp):
-            left, right = value(node.left), value(node.right)
-            return {ast.Add: left + right, ast.Sub: left - right, ast.Mult: left * right}[type(node.op)]
-        return ast.literal_eval(node)
-
-    return value(ast.parse(formula, mode="eval").body)
-
-
 def run_arithmetic(case):
     """The best break that the code allows, with or without a free ball first."""
     title, formula = case["title"].lower(), case["expect"].get("formula", "0")
-    if "maximum" not in title:
-        return "not understood: " + title
+    if "maximum" not in title or not re.fullmatch(r"[\d+*() -]+", formula):
+        return f"not understood: {title}, {formula}"
     value = best_break("free ball" in title and "without" not in title)
-    same = "formula" in case["expect"] and value_of(formula) == value
+    same = eval(formula) == value
     return compare(case["expect"], {"value": value, "formula": formula if same else "other"})
 
 

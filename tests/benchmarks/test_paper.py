@@ -2,26 +2,28 @@
 
 import json
 
-import numpy as np
 import pytest
 
 from benchmarks.paper import __main__ as paper
 from benchmarks.paper import other_data as data
 from benchmarks.paper import paper_shots as shots
-from tests.oracles.paper_tables import PAPER_ROWS
 from tests.physics.test_impacts import CUTS, THROW
 
+PRINTED = {
+    "v0_m_s": [1.539, 1.032, 1.364, 1.731, 0.942],
+    "topspin_rad_s": [58.63, 39.31, 51.96, 65.94, 35.89],
+    "cut_deg": [33.83, 26.36, 40.52, 46.50, 18.05],
+    "measured_v_c": [0.816, 0.520, 0.925, 1.275, 0.365],
+    "measured_v_o": [0.836, 0.629, 0.700, 0.787, 0.581],
+    "measured_angle_c": [35.96, 33.20, 30.50, 27.97, 29.86],
+    "measured_angle_o": [33.83, 26.36, 40.51, 46.50, 18.05],
+}
+"""Tables 1 and 2 of the paper, typed apart from the file; what they predict is held to ``euler:10000``."""
 
-def test_the_tables_file_holds_what_the_other_tests_hold():
-    """Two copies of the paper's numbers, typed apart: they differ where the file keeps the printed slip."""
+
+def test_the_tables_file_holds_what_is_printed():
     rows = shots.tables()
-    for q in shots.QUANTITIES:
-        assert rows[f"measured_{q}"].tolist() == [getattr(r, f"measured_{q}") for r in PAPER_ROWS]
-        different = np.flatnonzero(rows[f"printed_{q}"] != [getattr(r, q) for r in PAPER_ROWS]).tolist()
-        assert different == ([3] if q == "v_c" else [])
-    assert [rows[k].tolist() for k in ("v0_m_s", "topspin_rad_s", "cut_deg")] == [
-        [getattr(r, k) for r in PAPER_ROWS] for k in ("v0", "w_t", "cut")
-    ]
+    assert {name: rows[name].tolist() for name in PRINTED} == PRINTED
 
 
 def test_only_the_known_slips_of_the_tables_are_marked():

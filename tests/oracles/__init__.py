@@ -3,14 +3,11 @@ imports them.
 
 ``ball_ball``        one frictional impact of two balls, to about 1e-12 of the incoming speed.
 ``ball_cushion``     one frictional impact of a ball on a cushion, to about 1e-12.
-``march``            how the float oracles pass an impact's changes of slip and stick; ``vectors`` is their arithmetic.
+``march``            how the float oracles pass an impact's changes of slip and stick, and their vectors.
 ``moreau``           the same impacts by another method, to about 1e-9; and of a ball that comes down on another.
-``paper_tables``     the rows of the paper's tables.
 ``flight_3d``        a whole shot, with balls that fly or do not, on a table or unbounded cloth, by small fixed steps of the forces.
 ``cue_clearance``    how near a cue comes to rails and balls, by spheres along its axis.
-``bouncing_ball``    one ball that a raised cue drives into the bed: its bounces, to rest.
 ``pocket_3d``        one ball in a pocket in three dimensions, by small fixed steps of the forces.
-``motions``          what the oracles' own tests share.
 ``frame_oracle``     whole frames judged by the rules of snooker, stroke by stroke; a command. Its parts begin with the same name.
 
 The oracles are derived from rigid-body mechanics alone and share no code, formula or constant with

@@ -10,8 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .march import AT_ZERO, Regime, march
-from .vectors import Vector, Z, add, cross, dot, norm, normalized, on_the_cloth, scale, unit_horizontal
+from .march import AT_ZERO, Regime, Vector, Z, add, cross, dot, march, norm, normalized, scale
 
 Friction = float | Callable[[float], float]
 
@@ -129,13 +128,10 @@ def ball_ball(
     mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s].
 
     Returns (v1, w1, v2, w2) as float64 arrays. The vertical velocity of the lifted ball is part of the
-    result. If the balls do not approach (normal closing speed <= 0) the inputs come back unchanged.
+    result. The balls must approach.
     """
     v1, w1, v2, w2 = (np.array(a, dtype=float) for a in (v1, w1, v2, w2))
-    on_the_cloth(v1, v2)
-    n = unit_horizontal(normal)
-    if (v1 - v2) @ np.array(n) <= 0.0:
-        return v1, w1, v2, w2
+    n = normalized(tuple(map(float, normal)))
     unit = max(float(np.linalg.norm(a)) for a in (v1, R * w1, v2, R * w2))
     state = [float(c) / unit for a in (v1, R * w1, v2, R * w2) for c in a]
     law = (lambda s: mu_bb(s * unit)) if callable(mu_bb) else mu_bb

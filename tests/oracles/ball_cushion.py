@@ -11,13 +11,16 @@ import math
 import numpy as np
 from scipy.optimize import brentq, root
 
-from .march import AT_ZERO, RELEASE, ZERO_SLIP, Regime, march
-from .vectors import Vector, Z, add, cross, dot, norm, normalized, on_the_cloth, scale, unit_horizontal
+from .march import AT_ZERO, ZERO_SLIP, Regime, Vector, Z, add, cross, dot, march, norm, normalized, scale
+
+# A sticking contact is released once the friction that would hold it exceeds the limit by this fraction, not
+# at the very limit, where the slip it would start with has no rate yet. The impulse that passes meanwhile is
+# of the same order, the error of its square.
+RELEASE = 1e-9
 
 
 class _BallCushion:
-    """One ball against a cushion whose nose is above the centre; ``m`` is the unit vector from the centre to
-    the contact."""
+    """One ball against a cushion whose nose is above the centre; ``m`` is the unit vector from the centre to the contact."""
 
     def __init__(self, normal: Vector, mu_w: float, mu_s: float, sin_theta: float):
         cos_theta = math.sqrt(1.0 - sin_theta**2)
@@ -36,16 +39,14 @@ class _BallCushion:
         return at_nose, (at_cloth[0], at_cloth[1], 0.0)
 
     def apply(self, f: Vector, reaction: float, cloth_friction: Vector) -> list[float]:
-        """Rates of the six velocities per unit of P/M under the cushion's push -m and friction f, and the
-        cloth's answer."""
+        """Rates of the six velocities per unit of P/M under the cushion's push -m and friction f, and the cloth's answer."""
         from_nose = add(scale(-1.0, self.m), f)
         from_cloth = add(cloth_friction, scale(reaction, Z))
         spin = scale(2.5, add(cross(self.m, from_nose), cross(scale(-1.0, Z), from_cloth)))
         return [*add(from_nose, from_cloth), *spin]
 
     def cloth_answer(self, f: Vector, law: str, direction: Vector | None = None) -> tuple[float, Vector]:
-        """Reaction N' that holds the ball's height and the cloth's friction, for a nose friction ``f``;
-        affine in ``f``."""
+        """Reaction N' that holds the ball's height and the cloth's friction, for a nose friction ``f``; affine in ``f``."""
         if law == "off":
             return 0.0, (0.0, 0.0, 0.0)
         reaction = dot(self.m, Z) - f[2]
@@ -84,8 +85,7 @@ class _BallCushion:
         return self.tangent(float(a), float(b))
 
     def holding_any(self, airborne: bool, cloth_slip: Vector | None) -> Vector:
-        """The nose friction that keeps the nose's slip constant when the cloth's law depends on it (Coulomb,
-        N' >= 0)."""
+        """The nose friction that keeps the nose's slip constant when the cloth's law depends on it (Coulomb, N' >= 0)."""
         candidates = ["off"] if airborne else ["slip" if cloth_slip is not None else "stick", "off"]
         direction = None if cloth_slip is None else normalized(cloth_slip)
         for law in candidates:
@@ -105,8 +105,7 @@ class _BallCushion:
         return self.tangent(*(float(c) for c in solution.x))
 
     def start_direction(self, airborne: bool, cloth_slip: Vector | None) -> Vector:
-        """Unit vector d of a slip that starts from zero: its rate under the friction -mu_w d is along d
-        itself."""
+        """Unit vector d of a slip that starts from zero: its rate under the friction -mu_w d is along d itself."""
 
         def rate(angle):
             d = self.tangent(math.cos(angle), math.sin(angle))
@@ -200,14 +199,10 @@ def ball_cushion(v, w, normal, *, R: float, M: float, e: float, mu_w: float, mu_
     cushion and on cloth.
     sin_theta : height of the cushion's nose above the ball's centre over R.
 
-    Returns (v, w) as float64 arrays, the vertical velocity of a ball that was lifted included. A ball that
-    does not approach comes back unchanged.
+    Returns (v, w) as float64 arrays, the vertical velocity of a ball that was lifted included. The ball must approach.
     """
     v, w = np.array(v, dtype=float), np.array(w, dtype=float)
-    on_the_cloth(v)
-    n = unit_horizontal(normal)
-    if v @ np.array(n) <= 0.0:
-        return v, w
+    n = normalized(tuple(map(float, normal)))
     unit = max(float(np.linalg.norm(v)), float(np.linalg.norm(R * w)))
     state = [float(c) / unit for a in (v, R * w) for c in a]
     out = np.array(march(state, _BallCushion(n, mu_w, mu_s, sin_theta), e)) * unit

@@ -30,7 +30,6 @@ SI units, mass 1. Table frame: right-handed, z up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numba
@@ -64,6 +63,7 @@ ZERO_SLIP = 1e-12  # [m/s] a slip below this is rolling; a real slip ends by a c
 APPROACH = 1e-10  # [m/s] touching bodies that approach more slowly than this are left alone
 TOUCH = 1e-12  # [m] bodies this close touch: contacts are located to this distance
 DEEP = 1e-6  # [m] a ball so far past a nose, jaw or plane did not come to it from the front
+MOST = 120.0  # [s] the longest shot
 MARLOW = (9.951e-3, 0.108, 1.088)  # the law of friction between balls called "marlow"
 Law = tuple[float, float, float]  # (a, b, c) of the friction between balls, mu = a + b exp(-c s), s [m/s]
 UP = np.array([0.0, 0.0, 1.0])
@@ -332,10 +332,10 @@ def _first(balls, h, reach, noses, jaws, falls, m):
 
 
 @numba.njit
-def _run_to_contact(balls, time, into_step, dt, max_time, noses, jaws, falls, m):
+def _run_to_contact(balls, time, into_step, dt, noses, jaws, falls, m):
     """Step all balls, in place, to the next contact. Returns (time, into_step, kind, i, k); kind -1: all rest,
-    -2: max_time is past. ``into_step``: how much of the current step has passed."""
-    while time < max_time:
+    -2: ``MOST`` is past. ``into_step``: how much of the current step has passed."""
+    while time < MOST:
         h = dt - into_step
         fastest, moving = 0.0, False
         for ball in balls:
@@ -361,11 +361,6 @@ def _run_to_contact(balls, time, into_step, dt, max_time, noses, jaws, falls, m)
 
 
 # ---------------------------------------------------------------- impacts of bodies that are free or fixed
-
-
-def rub(v, w, p, mu, R):
-    """Velocity and spin after the bed's normal impulse p has rubbed: Coulomb's law on the slip of the lowest point."""
-    return _rubbed(v, w, -UP, mu * p, R)
 
 
 def _rubbed(v, w, m, most, R):
@@ -425,18 +420,15 @@ class _Shot:
     """What each kind of contact does to the balls, under the constants ``physics``."""
 
     def __init__(self, physics, noses, jaws, falls):
-        if getattr(physics, "nap", 0.0):
+        if physics.nap:
             raise ValueError("the oracle has no nap")
-        self.p, self.e_t = physics, getattr(physics, "e_t", 0.5)
-        self.flies = getattr(physics, "flight", True)
+        self.p, self.e_t, self.flies = physics, physics.e_t, physics.flight
         self.noses, self.jaws, self.falls = noses, jaws, falls
-        mu = MARLOW if physics.mu_bb == "marlow" else physics.mu_bb
-        self.mu_bb: Law = tuple(mu) if isinstance(mu, (tuple, list)) else (float(mu), 0.0, 0.0)
+        self.mu_bb: Law = MARLOW if physics.mu_bb == "marlow" else (float(physics.mu_bb), 0.0, 0.0)
         R, g, sin = physics.R, physics.g, physics.sin_theta
-        drag = getattr(physics, "roll_drag", 0.0)
         ahead = R * math.sqrt(1.0 - sin * sin)
         slides, rolls = physics.mu_s * g, physics.mu_r * g
-        self.model = Model(R, g, slides, rolls, physics.spin_decel, drag, R * sin, ahead)
+        self.model = Model(R, g, slides, rolls, physics.spin_decel, physics.roll_drag, R * sin, ahead)
 
     def put(self, ball, v, w):
         """New velocity and spin; a ball without height or vertical velocity is on the bed."""
@@ -447,8 +439,7 @@ class _Shot:
         """Of a jaw at every speed; of a nose, falling with the speed into it above the knee."""
         p = self.p
         if jaw:
-            e_j = getattr(p, "e_j", None)
-            return p.e_c if e_j is None else e_j
+            return p.e_c if p.e_j is None else p.e_j
         fades = p.e_c_power > 0.0 and speed > p.e_c_knee
         return p.e_c * (speed / p.e_c_knee) ** -p.e_c_power if fades else p.e_c
 
@@ -456,7 +447,7 @@ class _Shot:
         """Off the bed or the rail's top at -v_z."""
         down = -v[2]
         up = self.e_t * down if self.e_t * down >= SETTLE else 0.0
-        v, w = rub(v, w, down + up, self.p.mu_s, self.p.R)
+        v, w = _rubbed(v, w, -UP, self.p.mu_s * (down + up), self.p.R)
         return np.array([v[0], v[1], up]), w
 
     def thrown(self, v, w, press):
@@ -464,7 +455,7 @@ class _Shot:
         up = self.e_t * press
         if up < SETTLE:
             return np.array([v[0], v[1], 0.0]), w
-        v, w = rub(v, w, up, self.p.mu_s, self.p.R)
+        v, w = _rubbed(v, w, -UP, self.p.mu_s * up, self.p.R)
         return np.array([v[0], v[1], up]), w
 
     def lifted(self, v, w, press=0.0):
@@ -563,21 +554,17 @@ def simulate(
     *,
     physics,
     table=None,
-    dt: float = 5e-5,
-    max_time: float = 120.0,
+    dt: float,
     log: list | None = None,
-    watch: Callable | None = None,
 ) -> tuple[np.ndarray, list[str]]:
     """Final positions, (n, 3) [m], and fates of n balls, once all are at rest or gone.
 
     positions : (n, 2) or (n, 3) [m], z above the height on the bed. velocities [m/s], spins [rad/s] : (n, 3). A
     v_z below zero at z = 0 is a strike into the bed.
-    physics : the constants, by the names of ``Physics``; ``e_t``, restitution of the bed, 0.5 if it has none.
-    table : None, or an object with the arrays ``noses``, ``jaws``, ``falls`` of ``Table``.
-    dt : step [s]. max_time [s] : RuntimeError if the balls still move then, or after 10000 contacts.
+    physics : a ``Physics``. table : a ``Table``, or None.
+    dt : step [s]. RuntimeError if the balls still move after ``MOST``, or after 10000 contacts.
     log : if a list is given, (time, kind, i, k) of each contact is appended. k: the other ball, or the nose, jaw or
     fall, or -1. Kinds: ``KINDS``.
-    watch : called as watch(time, balls) with the states (n, 10) at the start and after each contact.
 
     Fates: "table", "potted" or "off". A ball's position is then where it was lost.
     Contacts in one step are resolved in order of time; at equal times the ball with the lowest index goes first.
@@ -594,13 +581,9 @@ def simulate(
         shot.put(ball, v, w)
     time = into_step = 0.0
     for _ in range(10_000):
-        if watch is not None:
-            watch(time, balls.copy())
-        time, into_step, kind, i, k = _run_to_contact(
-            balls, time, into_step, dt, max_time, *arrays, shot.model
-        )
+        time, into_step, kind, i, k = _run_to_contact(balls, time, into_step, dt, *arrays, shot.model)
         if kind == -2:
-            raise RuntimeError(f"the balls still move after {max_time} s")
+            raise RuntimeError(f"the balls still move after {MOST} s")
         if kind == -1:
             fates = ["table", "table", "potted", "off"]
             return balls[:, [X, Y, Z]].copy(), [fates[int(mode)] for mode in balls[:, MODE]]

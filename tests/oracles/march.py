@@ -23,25 +23,48 @@ import numpy as np
 from scipy.integrate import DOP853, Radau
 from scipy.optimize import brentq
 
-from .vectors import Vector, dot, norm
+Vector = tuple[float, float, float]
+Z: Vector = (0.0, 0.0, 1.0)
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def scale(k: float, a: Vector) -> Vector:
+    return (k * a[0], k * a[1], k * a[2])
+
+
+def norm(a: Vector) -> float:
+    return math.sqrt(dot(a, a))
+
+
+def normalized(a) -> Vector:
+    """``a`` over its length; zero for zero, which happens only inside a step that runs past the event at ZERO_SLIP."""
+    length = norm(a)
+    return scale(1.0 / length, a) if length > 0.0 else a
+
 
 # In units of the largest incoming speed: a slip that falls to ZERO_SLIP has reached zero, and what is within
 # AT_ZERO when a regime is chosen is zero (twice as much: the state at the event is rounded). Rounding of the
 # velocities is about 1e-16; a slip starts at 10 ZERO_SLIP.
 ZERO_SLIP = 3e-15
 AT_ZERO = 2.0 * ZERO_SLIP
-# A sticking contact is released once the friction that would hold it exceeds the limit by this fraction, not
-# at the very limit, where the slip it would start with has no rate yet. The impulse that passes meanwhile is
-# of the same order, the error of its square.
-RELEASE = 1e-9
 SLOW = 0.05  # a slip that starts from zero with a lower rate per unit of P/M needs the stiff method
 RTOL, ATOL = 3e-14, 1e-15
 
 
 @dataclass(frozen=True)
 class Regime:
-    """What each contact does until the next event. ``main``: ball-ball or ball-cushion; ``cloth``: under the
-    ball."""
+    """What each contact does until the next event. ``main``: ball-ball or ball-cushion; ``cloth``: under the ball."""
 
     main: str  # "slip" or "stick"
     cloth: str  # "slip", "stick" or "off" (no reaction)

@@ -15,12 +15,10 @@ Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (momen
   (``PROUD``). Compressed by ``x``, the nose pushes with ``k x``; from the largest compression ``X`` on, with
   ``(k / e^2) (x - (1 - e^2) X)``: a share ``e^2`` of the work comes back, Stronge's energetic restitution, at
   every speed and angle (Walton & Braun 1986, *J. Rheology* 30, 949). ``k = (pi / nose_time)^2``: the ball is
-  pressed in for ``nose_time / 2``. ``e`` may fall with the horizontal closing speed v of the impact:
-  ``nose_e (v / nose_knee)^-nose_power`` above the knee.
+  pressed in for ``nose_time / 2``.
 * The slate: a plane up to the circle of ``Table.falls``, from there rounded with radius ``edge`` and then a
   vertical wall. A spring and a dashpot that only push, of half period ``slate_time`` and of the damping that
-  gives a given restitution (``damping``: Schwager & Poeschel 2007, *Granular Matter* 9, 465, a contact that
-  ends when the force is zero).
+  gives a restitution of a half.
 * Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends
   the slip (2/7 of it). Where the slate holds the ball without slip, a torque ``7/5 mu_r N R`` against the
   spin: it slows a rolling ball by ``mu_r g``. Where the slate touches the ball, the spin about its normal
@@ -40,7 +38,6 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from scipy.optimize import brentq
 
 R, G, SIN_THETA = 0.02625, 9.81, 0.4
 HEIGHT = (1.0 + SIN_THETA) * R
@@ -50,18 +47,10 @@ CLEAR = 1e-3  # [m] so far from nose and edge nothing but the cloth acts
 AWAY = 0.12  # [m] a ball that moves away from the pocket so far outside the fall does not come back
 
 
-def damping(e: float, time: float) -> float:
-    """The dashpot 2 b [1/s] at which a contact x'' + 2 b x' + (pi / time)^2 x = 0 that only pushes has
-    restitution e > 0."""
-    w0 = math.pi / time
-
-    def restitution(b):
-        w = math.sqrt(abs(w0 * w0 - b * b))
-        if b < w0:
-            return math.exp(-b / w * (math.pi - math.atan2(2.0 * b * w, w * w - b * b)))
-        return math.exp(-b / w * math.log((b + w) / (b - w)))
-
-    return 2.0 * brentq(lambda b: restitution(b) - e, 1e-9 * w0, 200.0 * w0)
+HALF_BACK = 1.6039441357552195
+"""The dashpot d [1/s] at which a contact x'' + d x' + (pi / time)^2 x = 0 that only pushes has restitution 1/2 is this over its
+time: with b = d / 2 and w^2 = (pi / time)^2 - b^2, exp(-b / w (pi - atan2(2 b w, w^2 - b^2))) is 1/2. A contact ends when
+the force is zero (Schwager & Poeschel 2007, *Granular Matter* 9, 465)."""
 
 
 class Model(NamedTuple):
@@ -69,10 +58,8 @@ class Model(NamedTuple):
 
     nose_time: float  # [s]
     slate_time: float  # [s]
-    slate_damping: float  # [1/s], see ``damping``
+    slate_damping: float  # [1/s]
     nose_e: float = 0.98
-    nose_knee: float = 2.07  # [m/s]
-    nose_power: float = 0.0
     nose_mu: float = 0.14
     slate_mu: float = 0.21
     mu_r: float = 0.0127
@@ -80,7 +67,7 @@ class Model(NamedTuple):
     edge: float = 5e-4  # [m]
 
 
-def stiff(speed: float, **fields) -> Model:
+def stiff(speed: float) -> Model:
     """A model for balls of about this speed [m/s] that comes near rigid surfaces: the nose is compressed by
     0.3 mm at most, for 0.5 ms.
 
@@ -90,9 +77,7 @@ def stiff(speed: float, **fields) -> Model:
     slip, which turns the path of a slow ball that grazes a rail.
     """
     time = 1e-3 / max(speed, 2.0)
-    return Model(
-        **{"nose_time": time, "slate_time": time / 12.0, "slate_damping": damping(0.5, time / 12.0), **fields}
-    )
+    return Model(time, time / 12.0, HALF_BACK / (time / 12.0))
 
 
 @numba.njit
@@ -124,8 +109,7 @@ def _slate(x, y, z, fall, edge):
 
 @numba.njit
 def _push(v, w, n, p, mu):
-    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w,
-    held."""
+    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w, held."""
     v = (v[0] - p * n[0], v[1] - p * n[1], v[2] - p * n[2])
     sx = v[0] + R * (w[1] * n[2] - w[2] * n[1])
     sy = v[1] + R * (w[2] * n[0] - w[0] * n[2])
@@ -148,8 +132,7 @@ def _push(v, w, n, p, mu):
 
 @numba.njit
 def step(s, jaws, fall, m, dt):
-    """Advance the state by dt, in place. s: r (3), v (3), w (3), then for each jaw the largest compression
-    and the restitution."""
+    """Advance the state by dt, in place. s: r (3), v (3), w (3), then for each jaw the largest compression."""
     h = 0.5 * dt
     for c in range(3):
         s[c] += h * s[3 + c]
@@ -158,21 +141,18 @@ def step(s, jaws, fall, m, dt):
     for j in range(jaws.shape[0]):
         gap, hx, hy = _nose(s[0], s[1], jaws[j])
         if gap >= R:
-            s[9 + 2 * j] = 0.0
+            s[9 + j] = 0.0
             continue
         rise = HEIGHT - s[2]
         d = math.sqrt(gap * gap + rise * rise)
         level, rise = gap / d, rise / d
         x = R - d
         if x <= 0.0:
-            s[9 + 2 * j] = 0.0
+            s[9 + j] = 0.0
             continue
-        if s[9 + 2 * j] == 0.0:
-            closing = max(v[0] * hx + v[1] * hy, m.nose_knee)
-            s[10 + 2 * j] = m.nose_e * (closing / m.nose_knee) ** -m.nose_power
-        s[9 + 2 * j] = max(s[9 + 2 * j], x)
-        e2 = s[10 + 2 * j] ** 2
-        f = k * x if x == s[9 + 2 * j] else k / e2 * max(0.0, x - (1.0 - e2) * s[9 + 2 * j])
+        s[9 + j] = max(s[9 + j], x)
+        e2 = m.nose_e**2
+        f = k * x if x == s[9 + j] else k / e2 * max(0.0, x - (1.0 - e2) * s[9 + j])
         v, w, _ = _push(v, w, (hx * level, hy * level, rise), f * dt, m.nose_mu)
     d, n = _slate(s[0], s[1], s[2], fall, m.edge)
     if d < R:
@@ -194,20 +174,15 @@ def step(s, jaws, fall, m, dt):
 
 
 @numba.njit
-def trace(s, jaws, fall, m, dt, n, every):
-    """n records of the state, ``every`` steps apart; ``s`` is advanced in place."""
-    out = np.empty((n, s.size))
-    for i in range(n):
-        for _ in range(every):
-            step(s, jaws, fall, m, dt)
-        out[i] = s
-    return out
+def trace(s, jaws, fall, m, dt, n):
+    """Advance the state by n steps, in place."""
+    for _ in range(n):
+        step(s, jaws, fall, m, dt)
 
 
 @numba.njit
 def _approach(s, jaws, fall, m, dt):
-    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or
-    away."""
+    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or away."""
     while True:
         dx, dy = s[0] - fall[0], s[1] - fall[1]
         reach = math.sqrt(s[3] ** 2 + s[4] ** 2) * dt + CLEAR
@@ -236,10 +211,10 @@ def _approach(s, jaws, fall, m, dt):
 
 
 @numba.njit
-def _fate(s, jaws, fall, back, m, dt, most):
-    """POTTED, BACK or UNDECIDED after ``most`` [s]. back: unit vector outward and how far along it the back
+def _fate(s, jaws, fall, back, m, dt):
+    """POTTED, BACK or UNDECIDED after 4 s. back: unit vector outward and how far along it the back
     of the pocket keeps a ball."""
-    for n in range(int(most / dt)):
+    for n in range(int(4.0 / dt)):
         if n % 100 == 0 and abs(s[5]) < 1e-4 and abs(s[2] - R) < 1e-6:
             _approach(s, jaws, fall, m, 1e-4)
         step(s, jaws, fall, m, dt)
@@ -258,10 +233,10 @@ def _fate(s, jaws, fall, back, m, dt, most):
 
 
 @numba.njit
-def _fates(states, jaws, fall, back, m, dt, most):
+def _fates(states, jaws, fall, back, m, dt):
     out = np.empty(states.shape[0], np.int64)
     for i in range(states.shape[0]):
-        out[i] = _fate(states[i], jaws, fall, back, m, dt, most)
+        out[i] = _fate(states[i], jaws, fall, back, m, dt)
     return out
 
 
@@ -282,12 +257,11 @@ def pocket(table, index: int, nearer: float = 0.0):
 
 
 def at_rest(positions, velocities, spins, m: Model, n_jaws: int):
-    """States (b, 9 + 2 n_jaws) of balls on the bed, pressed into it by their weight. positions, velocities
+    """States (b, 9 + n_jaws) of balls on the bed, pressed into it by their weight. positions, velocities
     (b, 2), spins (b, 3)."""
-    states = np.zeros((len(positions), 9 + 2 * n_jaws))
+    states = np.zeros((len(positions), 9 + n_jaws))
     states[:, :2], states[:, 3:5], states[:, 6:9] = positions, velocities, spins
     states[:, 2] = R - G * (m.slate_time / math.pi) ** 2
-    states[:, 10::2] = 1.0
     return states
 
 
@@ -295,23 +269,10 @@ def default_step(m: Model) -> float:
     return min(m.nose_time / 50.0, m.slate_time / 10.0)
 
 
-def fates(
-    positions,
-    velocities,
-    spins,
-    table,
-    index: int,
-    m: Model,
-    dt: float | None = None,
-    most: float = 4.0,
-    nearer: float = 0.0,
-):
+def fates(positions, velocities, spins, table, index: int, m: Model, nearer: float):
     """What becomes of balls that start on the bed: an array of POTTED, BACK, UNDECIDED (b,).
 
-    positions, velocities (b, 2) [m, m/s]; spins (b, 3); table: a ``Table``; index: the pocket; dt [s]: step;
-    most [s]: give up after it; nearer [m]: see ``pocket``.
+    positions, velocities (b, 2) [m, m/s]; spins (b, 3); table: a ``Table``; index: the pocket; nearer [m]: see ``pocket``.
     """
     jaws, fall, back = pocket(table, index, nearer)
-    return _fates(
-        at_rest(positions, velocities, spins, m, len(jaws)), jaws, fall, back, m, dt or default_step(m), most
-    )
+    return _fates(at_rest(positions, velocities, spins, m, len(jaws)), jaws, fall, back, m, default_step(m))

@@ -50,41 +50,35 @@ def scene(rng, table):
     return r, v, w
 
 
-def until_chaos(shot, log):
-    """How many events agree, of the oracle's and the engine's; and whether the engine has another one."""
-    own = [
-        (float(e["time"]), NAMES[EventKind(e["kind"])], int(e["i"]), int(e["j"]))
-        for e in shot.events
-        if EventKind(e["kind"]) in NAMES
-    ]
-    for k, (mine, its) in enumerate(zip(own, log, strict=False)):
-        same = mine[1] == its[1] and mine[2] == its[2] and (mine[1] != "ball" or mine[3] == its[3])
-        if not same or abs(mine[0] - its[0]) > 1e-5:
-            return k, own
-    return min(len(own), len(log)), own
+def met(events):
+    """Kind, ball and other ball of each event; of what else is met, engine and oracle have numbers of their own."""
+    return [(kind, int(i), int(j) if kind == "ball" else -1) for _, kind, i, j in events]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("preset", ["paper", "match"])
-def test_shots_that_fly_are_those_of_tiny_steps(preset):
-    """100 shots of each preset. After an event that multiplies rounding by a thousand and more nothing is compared: a shot
-    is compared as long as the oracle with half the step agrees with itself to 1e-8 m."""
-    physics, rng = sn.Physics.preset(preset, flight=True), np.random.default_rng(5)
+@pytest.mark.parametrize(
+    ("preset", "seed", "many"),
+    [("match", 103, 16), *(pytest.param(one, 5, 100, marks=pytest.mark.slow) for one in ("paper", "match"))],
+)
+def test_shots_that_fly_are_those_of_tiny_steps(preset, seed, many):
+    """All events are compared, of balls that meet balls, noses and jaws on the bed and in the air."""
+    physics, rng = sn.Physics.preset(preset, flight=True), np.random.default_rng(seed)
     compared = flown = 0
     kinds: dict[str, int] = {}
-    for k in range(100):
+    for k in range(many):
         name = "match" if k % 5 else None
         table = Table.of(name)
         r, v, w = scene(rng, name)
         shot = sn.simulate(r, v, w, name, physics, "reference")
         log: list = []
         place, fate = flight_3d.simulate(
-            r, v, w, physics=physics, table=table if name else None, dt=2e-4, max_time=60.0, log=log
+            r, v, w, physics=physics, table=table if name else None, dt=2e-4, log=log
         )
-        agree, own = until_chaos(shot, log)
-        if any(EventKind(e["kind"]) == EventKind.DROP for e in shot.events):
+        if EventKind.DROP in shot.events["kind"]:
             continue  # the oracle does not follow a ball into a pocket
-        assert agree == len(log) == len(own), (k, agree, log[agree : agree + 2], own[agree : agree + 2])
+        events = shot.events[["time", "kind", "i", "j"]].tolist()
+        own = [(time, NAMES[kind], *balls) for time, kind, *balls in events if kind in NAMES]
+        assert met(own) == met(log), k
+        np.testing.assert_allclose([e[0] for e in own], [e[0] for e in log], rtol=0, atol=1e-5)
         on = [i for i, f in enumerate(fate) if f == "table"]
         assert [bool(shot.on_table[i]) for i in range(len(r))] == [f == "table" for f in fate]
         np.testing.assert_allclose(shot.positions[on], place[on, :2], rtol=0, atol=1e-6)
@@ -92,11 +86,8 @@ def test_shots_that_fly_are_those_of_tiny_steps(preset):
         flown += EventKind.LAND in shot.events["kind"] or EventKind.OFF in shot.events["kind"]
         for _, kind, *_ in own:
             kinds[kind] = kinds.get(kind, 0) + 1
-    assert (
-        compared > 80
-        and flown > 60
-        and min(kinds.get(kind, 0) for kind in ("ball", "cushion", "land", "off")) > 5
-    ), kinds
+    assert compared > 0.8 * many and flown > 0.6 * many
+    assert min(kinds.get(kind, 0) for kind in ("ball", "cushion", "land", "off")) > 0.05 * many, kinds
 
 
 def test_shots_on_the_bed_are_those_of_tiny_steps():
@@ -140,9 +131,9 @@ def test_an_impact_from_above_is_the_oracles():
         law = Law(physics.pack(), contact.REFERENCE, 0)
         one = collide(*map(tuple, (v[0], w[0], v[1], w[1], n)), law, physics.e_b, np.zeros(WORK))
         mu = physics.friction_law
-        its = moreau_tilted(v[0], w[0], v[1], w[1], n, e=physics.e_b, mu=mu, mu_s=physics.mu_s, R=R)
-        assert one[5]
-        for mine, other, scale in zip(one[:4], its[:4], (1.0, R, 1.0, R), strict=True):
+        *its, press = moreau_tilted(v[0], w[0], v[1], w[1], n, e=physics.e_b, mu=mu, mu_s=physics.mu_s, R=R)
+        assert one[5] and one[4] == pytest.approx(max(0.0, press), abs=2e-6)
+        for mine, other, scale in zip(one[:4], its, (1.0, R, 1.0, R), strict=True):
             np.testing.assert_allclose(
                 np.multiply(mine, scale), np.multiply(other, scale), atol=2e-6, err_msg=str(k)
             )

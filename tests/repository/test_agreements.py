@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from benchmarks._common.shot_sets import _execute
 from snooker_env import Physics, Table, geometry
 from snooker_env.game import balls, in_hand, layouts, spotting
 from snooker_env.physics import columns as p
@@ -12,6 +13,8 @@ from snooker_env.physics import table
 from snooker_env.physics.parameters import MARLOW
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import Actions
+from snooker_env.tasks.noise import Noise, with_errors
+from tests.kernels import from_python
 from tests.shots import shot
 
 
@@ -63,3 +66,13 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
     law = [p.P_MU_BB_LEAST, p.P_MU_BB_EXTRA, p.P_MU_BB_FADE]
     packed = {(0.01, 0.1, 2.0): [0.01, 0.1, 2.0], 0.07: [0.07, 0.0, 0.0], "marlow": list(MARLOW)}
     assert {mu_bb: Physics(mu_bb=mu_bb).pack()[law].tolist() for mu_bb in packed} == packed
+
+
+def test_a_stroke_of_the_benchmarks_errs_as_the_package_s_law_says():
+    noise, law = Noise.of("club"), from_python(with_errors)
+    packed = noise.pack(geometry.BALL_RADIUS)
+    for seed in range(40):
+        errors = noise.draw_errors(np.random.default_rng(seed), 1)[0]
+        wanted = law(2.0, 0.1, -0.2, 0.7, 0.0, tuple(errors), packed)
+        got = _execute(2.0, 0.1, -0.2, 0.7, noise, np.random.default_rng(seed))
+        assert got == pytest.approx(wanted, rel=1e-12)
