@@ -17,10 +17,7 @@ from ..game.layouts import plan_of
 from ..tasks.options import Options
 
 HELD_OUT_SEED = 1_000_000
-"""Seed of the first judged table."""
-FRESH_SEED, SEEDS_END = 1_500_000, 2_000_000
-"""``check --fresh`` draws its seeds from the first one on. Seeds from ``HELD_OUT_SEED`` on and below the last one are for
-judging alone, not for training."""
+"""Seed of the first judged table. A million seeds from it on are for judging alone, not for training."""
 FREE = ("action", "aim", "observation", "elevation", "placement", "speeds", "says")
 """Options that an agent may choose in every task: its observation, and how its actions are read."""
 
