@@ -6,7 +6,7 @@ import numpy as np
 
 from agents._lib.tables import text_table
 from snooker_env import player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.players.search_player import BUDGET, SearchPlayer
 

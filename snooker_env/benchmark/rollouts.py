@@ -17,10 +17,7 @@ from .playing import Decider, rounds
 from .statistics import adjust
 from .tasks import HELD_OUT_SEED
 
-CENTURY = 100
-"""Points of a century break."""
-MAXIMUM = 147
-"""Points of the largest break with 15 reds: a black after each red, then the colours."""
+CENTURY, MAXIMUM = 100, 147  # points of a century break, and of the largest with 15 reds
 EASY = POT_WINDOWS["easy"][0]
 HIGH = 6  # pink and black are colours of high value
 FIGURES = {
@@ -65,9 +62,8 @@ class PlayedStrokes:
     Examples
     --------
     >>> from snooker_env.benchmark import play_visits
-    >>> strokes = play_visits("ghost_ball", 2, layout="colours")
-    >>> strokes.visits, strokes.a_visit(strokes.points).shape
-    (2, (2,))
+    >>> play_visits("ghost_ball", 2, layout="colours").visits
+    2
     """
 
     visits: int
@@ -198,25 +194,7 @@ def counts(s: PlayedStrokes) -> dict[str, Floats]:
 
 
 def summary(strokes: PlayedStrokes) -> dict[str, Any]:
-    """Mean figures of visits.
-
-    Parameters
-    ----------
-    strokes : PlayedStrokes
-        All strokes of the visits.
-
-    Returns
-    -------
-    dict of str to float, int or None
-        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits.
-        None where a mean has no cases.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import play_visits, summary
-    >>> summary(play_visits("random", 3, layout="colours"))["visits"]
-    3
-    """
+    """Mean figures of visits by name, None where a mean has no cases. Names that end in "_se" are standard errors over visits."""
     each = counts(strokes)
     totals = {name: float(values.sum()) for name, values in each.items()}
     means: dict[str, Any] = {

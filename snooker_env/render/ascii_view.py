@@ -8,7 +8,8 @@ from textwrap import wrap
 import numpy as np
 
 from .._lib.check import integer
-from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, has_lines
+from ..geometry import COLOUR_SPOTS
+from .outline import BAULK_LINE, D_ARC, extent, has_lines
 from .palette import LETTERS
 from .scene import Scene
 
@@ -55,7 +56,7 @@ def ansi(scene: Scene, width: int = WIDTH) -> str:
     if has_lines(scene.table):
         grid.line(BAULK_LINE, _LINE)
         grid.line(D_ARC, _ARC)
-        for spot in SPOT_MARKS:
+        for spot in COLOUR_SPOTS:
             grid.mark(spot, _SPOT)
     for points in scene.paths.values():
         grid.line(points, _PATH)

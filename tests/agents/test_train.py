@@ -21,7 +21,7 @@ from agents.learning.agent_training import recipe_of
 from agents.learning.loop import Loop
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of
 from tests.agents.training import TINY, results, resume, run, weights
 from tests.processes import ROOT, replace

@@ -12,7 +12,7 @@ from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import Recipe
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.physics import conditions
 from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Positions

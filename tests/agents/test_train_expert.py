@@ -5,7 +5,8 @@ import pytest
 
 import snooker_env as sn
 from agents.learning import loop
-from snooker_env.benchmark import count_shots, play_visits, summary
+from snooker_env.benchmark import count_shots
+from snooker_env.benchmark.rollouts import play_visits, summary
 from tests.agents import training
 from tests.agents.training import results, weights
 

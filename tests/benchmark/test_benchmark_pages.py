@@ -4,10 +4,11 @@ import re
 
 import pytest
 
-from snooker_env.benchmark import TASKS, faults, read_result
+from snooker_env.benchmark import TASKS, faults
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import page
 from snooker_env.benchmark.provenance import arithmetic
+from snooker_env.benchmark.results import read_result
 from snooker_env.benchmark.schema import FIELDS, NUMBER, UNPROVED
 from snooker_env.benchmark.tasks import FREE
 from tests.processes import ROOT
