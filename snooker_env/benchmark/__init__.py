@@ -5,7 +5,7 @@ from ..simulation.count import count_shots
 from .agents import Agent
 from .checking import faults
 from .playing import COLUMNS
-from .rollouts import PlayedStrokes, play_visits
+from .rollouts import play_visits
 from .run import judge
 from .tasks import HELD_OUT_SEED, TASKS, Task
 
@@ -15,7 +15,6 @@ __all__ = [
     "TASKS",
     "Agent",
     "AgentError",
-    "PlayedStrokes",
     "Task",
     "count_shots",
     "faults",

@@ -95,7 +95,7 @@ class Task:
         """Return the seeds of the first n judged tables; in whole frames, those of the errors. ValueError if n is too large."""
         integer("episodes", n, 1, 2**20)
         first, alike = HELD_OUT_SEED, plan_of(self.judged_layout).in_hand
-        return list(range(first, first + n)) if alike else tables_of(self.judged_layout, n)
+        return list(range(first, first + n) if alike else tables_of(self.judged_layout, n))
 
     @property
     def most(self) -> int:
@@ -147,7 +147,8 @@ def task_of(name: object) -> Task:
 
 
 @lru_cache(maxsize=32)
-def _tables_of(layout: str, n: int) -> tuple[int, ...]:
+def tables_of(layout: str, n: int) -> tuple[int, ...]:
+    """Seeds of n tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not."""
     plan, seeds, known = plan_of(layout), [], set()
     for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + n + 20 * min(n, HELD_OUT)):  # brings all of a bank
         positions, _ = deal(plan, np.random.default_rng(seed))
@@ -158,11 +159,6 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
             if len(seeds) == n:
                 return tuple(seeds)
     raise refuse("visits", n, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
-
-
-def tables_of(layout: str, visits: int) -> list[int]:
-    """Seeds of tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not."""
-    return list(_tables_of(layout, visits))
 
 
 def most_points(layout: str) -> int:

@@ -16,8 +16,7 @@ from ..physics.table import Table
 from ..planning import Positions
 from ..play.service import OFFERED, BusyError
 from ..players.requests import STROKE
-from ..render.pygame_balls import BOLD, pygame_, typeset
-from ..render.pygame_view import View, draw
+from ..render.pygame_view import BOLD, View, draw, pygame_, typeset
 from ..render.scene import scene
 from ..simulation import SimulationError
 from ..tasks.noise import LEVELS
