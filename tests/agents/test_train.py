@@ -172,18 +172,6 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
         del played[:]
 
 
-def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
-    start = str(finished)
-    assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
-    assert np.array_equal(weights(tmp_path / "run"), weights(finished))
-    found = results(tmp_path / "run")
-    begun = {"model": start, "shots": 512, "imitated": 0, "start": None, "simulated_shots": 512}
-    assert found["start"] == begun and found["simulated_shots"] == 1024
-    assert f"ppo_target, with 512 shots of training on top of the 512 of {start}, " in found["learned"]
-    error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", "ppo_value", "--start", start)
-    assert "must be a model of ppo_value" in error
-
-
 class AnyAction:
     """Any action of another player's own format."""
 
