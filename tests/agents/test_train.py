@@ -43,7 +43,7 @@ def test_run_leaves_model_figures_and_curves(finished):
     assert {p.name for p in out.iterdir()} == FILES
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
-    names = "command settings steps simulated_shots seconds parts start learned evaluation curve imitation"
+    names = "command settings steps simulated_shots seconds parts learned evaluation curve imitation"
     assert sorted(found) == sorted(f"{names} commit seed machine load software".split())
     assert found["settings"]["agent"] == "ppo_target" and found["steps"] == 512 == found["simulated_shots"]
     (part,) = found["parts"]
