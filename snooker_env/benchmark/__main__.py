@@ -44,12 +44,8 @@ def parser() -> argparse.ArgumentParser:
     add("--timeout", type=float, default=60.0, help=how)
     add("--label", help="name of the agent in tables (default: taken from --agent)")
     add("--episodes", type=int, help="play fewer episodes as a trial; the result is then not official")
-    add(
-        "--training-shots",
-        type=int,
-        metavar="N",
-        help="shots simulated in all of its training; 0 for an untrained agent",
-    )
+    help_ = "shots simulated in all of its training; 0 for an untrained agent"
+    add("--training-shots", type=int, metavar="N", help=help_)
     help_ = "declare the shots simulated for one decision if this process cannot count them"
     add("--simulated-shots", type=int, metavar="N", help=help_)
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
@@ -57,17 +53,11 @@ def parser() -> argparse.ArgumentParser:
     add("--force", action="store_true", help="overwrite existing result files")
     check = commands.add_parser("check", help="verify result files; the exit code is 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
-    silly = commands.add_parser(
-        "degenerate",
-        help="play policies that do not look at the table; the exit code is 1 if one wins a task",
-    )
+    help_ = "play policies that do not look at the table; the exit code is 1 if one wins a task"
+    silly = commands.add_parser("degenerate", help=help_)
     silly.add_argument("tasks", nargs="*", metavar="TASK", help="task ids (default: all)")
-    silly.add_argument(
-        "--out",
-        metavar="FOLDER",
-        default="results/leaderboard",
-        help="folder of the result files [results/leaderboard]",
-    )
+    help_ = "folder of the result files [results/leaderboard]"
+    silly.add_argument("--out", metavar="FOLDER", default="results/leaderboard", help=help_)
     for one in (run, check, silly):
         one.add_argument(
             "--threads", type=int, help="threads that play the tables (default: one for each core)"
@@ -147,11 +137,8 @@ def _report(result: dict[str, Any], task: Task, file: Path) -> int:
         where = f"{len(result['rows']):,} episodes, class {agent['class']}, budget {agent['budget']}"
         print(f"{task.id}  {agent['label']}: {score} {unit}, {adjusted} less luck, {where}")
     if why is None and suspicious(result, task):
-        print(
-            f"Nearly every episode scored nothing. Are the actions of {agent['label']} read as in its training? A model trained "
-            "with aim=target needs --options aim=target.",
-            file=sys.stderr,
-        )
+        asks = f"Nearly every episode scored nothing. Are the actions of {agent['label']} read as in its training?"
+        print(f"{asks} A model trained with aim=target needs --options aim=target.", file=sys.stderr)
     if result["rows"]:
         wants = "; ".join(missing(result, task))
         print(f"not official ({wants}): {file}" if wants else f"official: {file}")

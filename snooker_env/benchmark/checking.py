@@ -10,7 +10,7 @@ from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import playing, schema
 from .agents import claims_player_name, is_player_name
-from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
+from .playing import BATCH, COLUMNS, STROKES, Kept
 from .provenance import arithmetic
 from .results import complete, strokes_of
 from .schema import fault, faults_of_fields, shorten
@@ -202,7 +202,14 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     n = next((n for n, (a, b) in enumerate(pairs) if a.tobytes() != b.tobytes()), len(again))
                     which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
-            wrong += _of_class(result, shorten(source), played)
+            if agent["class"] in ("model_free", "foresight") and played.simulated:
+                shots = (
+                    f"{shorten(source)} simulated {played.simulated:,} shots for {played.decisions:,} strokes"
+                )
+                wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {shots}")
+            if agent["foresees"] != played.foresees:
+                must = f"must be {played.foresees}, as of {shorten(source)}"
+                wrong.append(f"agent.foresees = {agent['foresees']}: {must}")
             simulated += played.simulated
             rates += [played.simulated / played.decisions] if played.decisions else []
             work += played.decisions + played.simulated / SHOTS
@@ -216,14 +223,3 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
             must += ", as known players simulate when they are asked again"
             wrong = [fault("timing.simulated_shots", shots, must)]
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
-
-
-def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[str]:
-    """Refuse a class that the play contradicts, by simulated shots or foresight."""
-    agent, wrong = record["agent"], []
-    if agent["class"] in ("model_free", "foresight") and played.simulated:
-        shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-        wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {who} simulated {shots}")
-    if agent["foresees"] != played.foresees:
-        wrong.append(f"agent.foresees = {agent['foresees']}: must be {played.foresees}, as of {who}")
-    return wrong

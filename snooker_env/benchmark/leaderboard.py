@@ -10,8 +10,6 @@ from .tasks import TASKS, Task
 
 WIDTH = 100
 FOLDER = "results/leaderboard"
-Table = tuple[list[str], list[list[str]]]  # heading and rows
-
 LEGEND = (
     "Ranked by adjusted, the mean score less luck, with its 95 % interval. anchor: should win nothing, has no rank. training: simulated "
     "shots of training (5 ×: of each of five seeds). shots: simulated shots a decision (d: declared, not counted). *: not official."
@@ -26,8 +24,10 @@ def is_anchor(result: dict[str, Any]) -> bool:
     return agent["class"] == "degenerate" or agent["label"] == "random"
 
 
-def board(results: Iterable[dict[str, Any]], task: Task, *, markdown: bool = False) -> Table:
-    """The table of a task, the best agent first; in Markdown with links to the files."""
+def board(
+    results: Iterable[dict[str, Any]], task: Task, *, markdown: bool = False
+) -> tuple[list[str], list[list[str]]]:
+    """Heading and rows of a task's table, the best agent first; in Markdown with links to the files."""
     mine = [one for one in results if one["task"] == task.id and one["figures"] is not None]
     mine.sort(key=lambda one: (-one["figures"]["adjusted"]["value"], one["agent"]["label"]))
     places = iter(range(1, len(mine) + 1))
