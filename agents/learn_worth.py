@@ -53,7 +53,20 @@ JUDGED = 950_000_000
 """The first table of the evaluation: no training and no calibration plays it."""
 HELD = 8
 """One frame in this many is held out from the fit, to measure its error."""
-LEARNED_FROM = ["seen", "hand", "target", "held", "unit", "striker", "lead", "left", "last", "won", "decided", "equals"]
+LEARNED_FROM = [
+    "seen",
+    "hand",
+    "target",
+    "held",
+    "unit",
+    "striker",
+    "lead",
+    "left",
+    "last",
+    "won",
+    "decided",
+    "equals",
+]
 """The rows of ``frame_self_play.frames``, with their targets."""
 
 

@@ -178,7 +178,7 @@ def try_frames(learned, noise, cue, seeds, other, rng):
         return strokes
 
     against = None if other is None else sn.player(other).at(known)
-    play_frames(options.rules, int(seeds[0]), len(seeds), act, against, threads)
+    play_frames(options.rules, int(seeds[0]), len(seeds), act, against, processors())
     return tuple(map(np.concatenate, zip(*rows, strict=True)))
 
 
