@@ -126,6 +126,5 @@ def read_earlier(
         what = f"{agent.label} on {task.id} with {episodes} episodes"
         raise refuse("out", str(path), f"must be a result of {what} to go on with")
     strokes, timing = strokes_of(result), result["timing"]
-    decisions, shots = sum(map(len, strokes)), timing["simulated_shots"]
-    cost = decisions, timing["seconds"], shots
+    cost = sum(map(len, strokes)), timing["seconds"], timing["simulated_shots"]
     return result, PlayedEpisodes(result["rows"], strokes, *cost, result["agent"]["foresees"])

@@ -61,11 +61,6 @@ _POINTS = 16  # points in a piece
 _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
-def line_width(scale: float) -> float:
-    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 in a picture of 1920 x 1080."""
-    return max(1.5, 0.0072 * scale)
-
-
 def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
     """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
     for points, colour in lines:
@@ -228,9 +223,7 @@ def draw_cue(surface: "Surface", scene: Scene, view: View) -> None:
         return
     back, flat, scale = -np.array([np.cos(cue.aim), np.sin(cue.aim)]), np.cos(cue.elevation), view.scale
     ends = view(cue.ball + (scene.ball_radius + cue.pull + np.array([[0.0], [_CUE_LENGTH * flat]])) * back)
-    low, high = (
-        np.clip(end, 0, surface.get_size()) for end in (ends.min(axis=0) - 20, ends.max(axis=0) + 20)
-    )
+    low, high = np.clip([ends.min(axis=0) - 20, ends.max(axis=0) + 20], 0, surface.get_size())
     columns, rows = (np.arange(int(a), int(b)) + 0.5 for a, b in zip(low, high, strict=True))
     x, y = np.meshgrid((columns - ends[0, 0]) / scale, (rows - ends[0, 1]) / scale)  # from the tip [m]
     along, across = (x * back[1] + y * back[0]) / flat, np.abs(x * back[0] - y * back[1])
@@ -242,10 +235,7 @@ def draw_cue(surface: "Surface", scene: Scene, view: View) -> None:
     surface.blit(surface_of(colour, cue.alpha * alpha), (int(low[0]), int(low[1])))
 
 
-_ROWS, _STRIP = (
-    72,
-    7,
-)  # of a bar in a picture of 1080 rows, and of the shares of the chance to win at its upper edge
+_ROWS, _STRIP = 72, 7  # of a bar in a picture of 1080 rows; of the shares of the chance to win, at its top
 _SMALLEST = 36  # the words of a lower bar are larger [pixels]
 _EDGE = 28  # beside and between words
 
@@ -289,7 +279,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     surface = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into it
     surface.set_clip((0, 0, view.width, view.height - view.bar))
     lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
-    draw_lines(surface, lines, line_width(view.scale))
+    draw_lines(surface, lines, max(1.5, 0.0072 * view.scale))
     draw_balls(surface, scene, view)
     draw_cue(surface, scene, view)
     surface.set_clip(None)
