@@ -16,7 +16,7 @@ from agents._lib.lifecycle import command, needs, parser_of
 with needs("agents.report"):
     from agents._lib.files import read_json, write_atomic
     from agents._lib.tables import WIDTH, TextTable, format_figure, page, show
-    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM
+    from snooker_env.benchmark.rollouts import CENTURY, FIGURES, MAXIMUM
     from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
 

@@ -26,8 +26,8 @@ with needs("agents.tournament"):
     from agents._lib.physics_option import physics_option
     from agents._lib.tables import show
     from snooker_env import Options
-    from snooker_env.benchmark import read_result, write_result
     from snooker_env.benchmark.provenance import machine
+    from snooker_env.benchmark.results import read_result, write_result
     from snooker_env.benchmark.statistics import RESAMPLES
     from snooker_env.checks import integer, refuse
     from snooker_env.players import FRAMES

@@ -63,22 +63,17 @@ def judge_agent(training, loop):
     print("\n".join(lines) + " (learning included)", flush=True)
     write_atomic(training.out / "model.zip", zip_model(model))
     figures = evaluate(training.recipe, model, settings.eval_visits, loop)
-    learned = conclusion(settings.agent, model.num_timesteps, model.imitated, figures, model.start)
+    learned = conclusion(settings.agent, model.num_timesteps, model.imitated, figures)
     if training.ppo.curve:
         learning = LearningCurve(settings.agent, training.ppo.curve, figures)
         print("", *learning.text(), sep="\n")
         learning.draw(training.out / "curve.png", training.ppo.seconds)
     curve = expert.curve if expert else []
-    simulated = [
-        model.num_timesteps,
-        *(one.get("simulated_shots") for one in (*curve[-1:], model.start) if one),
-    ]
     results = {
         "steps": model.num_timesteps,
-        "simulated_shots": None if None in simulated else sum(simulated),
+        "simulated_shots": model.num_timesteps + sum(one["simulated_shots"] for one in curve[-1:]),
         "seconds": sum(part["seconds"] for part in parts),
         "parts": parts,
-        "start": model.start,
         "curve": training.ppo.curve,
         "imitation": curve,
     }
@@ -113,10 +108,8 @@ def report(training, learned, figures, results, best, noise):
     points = figures["planner" if "search" in figures else "trained"]["longest_break"] // 2
     words = ["--agent", best, "--noise", str(noise), "--at-least", str(points)]
     watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
-    shots = results["simulated_shots"]
-    known = "not known" if shots is None else f"{shots:,}"
     without = f", without {results['without']}" if "without" in results else ""
-    print(f"{learned}\nShots simulated in training{without}: {known}.")
+    print(f"{learned}\nShots simulated in training{without}: {results['simulated_shots']:,}.")
     print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
     if (out / "tb").is_dir():
         print(f"Curves: tensorboard --logdir {out / 'tb'}")

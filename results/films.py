@@ -57,19 +57,20 @@ def _visit(agent, layout, at_least, noise="professional", **options):
     )
 
 
+FRAME = {
+    "task": "frame",
+    "opponent": "tactician",
+    "noise": "professional",
+    "cue": "real",
+    "miss": "clear_path",
+}
 FILMS = {
     "break": _visit("stroke_value", "held_out", 20),
     "break_club": _visit("planner", "held_out", 8, noise="club"),
     "escape": _visit("planner", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
         "tactician",
-        {
-            "task": "frame",
-            "opponent": "tactician",
-            "noise": "professional",
-            "cue": "real",
-            "miss": "clear_path",
-        },
+        FRAME,
         title="a frame: tactician against tactician",
         quiet=0.5,
     ),

@@ -90,8 +90,7 @@ curves() {
         --picture results/pictures/curves.png --page docs/agents/curves.md "$@"
 }
 
-judge() { # an agent's name, all simulated shots of its training; it stands on the page in any case
-    labels+=("$1")
+judge() { # an agent's name, all simulated shots of its training
     [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
     $bench run all --agent "${3:-$1}" --training-shots "$2" --out results/leaderboard --resume
 }
@@ -104,7 +103,6 @@ judge_seeds() { # the same of five training seeds, the first of which is the pac
 }
 
 judge_each() { # name, form and shots of agents.baseline: five models that are trained on each task
-    labels+=("$1")
     [[ -z $wanted || " $wanted " == *" $1 "* ]] || return
     tasks=$(python -c "from snooker_env.benchmark import TASKS; print(*TASKS)") || exit 1
     for task in $tasks; do
@@ -117,7 +115,7 @@ judge_each() { # name, form and shots of agents.baseline: five models that are t
 }
 
 leaderboard() {
-    bench="python -m snooker_env.benchmark" wanted="$*" labels=()
+    bench="python -m snooker_env.benchmark" wanted="$*"
     judge random 0
     judge ghost_ball 0
     judge best_pot 0
@@ -144,7 +142,7 @@ leaderboard() {
     judge_each menu_1m strokes 1000000
     # What looks at nothing, beside them: it must win no task.
     [[ -n $wanted ]] || $bench degenerate --out results/leaderboard || exit 1
-    $bench table results/leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"
+    $bench table results/leaderboard/*.json --markdown docs/leaderboard.md
 }
 
 part=${1:-}

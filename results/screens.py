@@ -13,13 +13,13 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
-QUIET = (
+QUIET = [
     "--no-sandbox",
     "--disable-gpu",
     "--no-first-run",
     "--disable-background-networking",
     "--disable-component-update",
-)
+]
 DESK, PHONE = {"width": 1280, "height": 880}, {"width": 390, "height": 844}
 
 
@@ -32,18 +32,8 @@ def shoot(page, file):
 def play(browser, out):
     """The page to play: at a desk with the best suggestion taken over, on a phone as a stroke is aimed."""
     person = Path(tempfile.mkdtemp()) / "person.json"
-    command = [
-        sys.executable,
-        "-m",
-        "snooker_env.play",
-        "--no-browser",
-        "--layout",
-        "opened",
-        "--seed",
-        "6",
-        "--person",
-        str(person),
-    ]
+    options = ["--no-browser", "--layout", "opened", "--seed", "6", "--person"]
+    command = [sys.executable, "-m", "snooker_env.play", *options, str(person)]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
         address = next(found[0] for line in server.stdout if (found := re.search(r"http://\S+", line)))
@@ -93,6 +83,6 @@ def replay(browser, out):
 def make(folder):
     """Take them all."""
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=QUIET)
         play(chromium, folder)
         replay(chromium, folder)

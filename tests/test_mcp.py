@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import faults, read_result
+from snooker_env.benchmark import faults
 from snooker_env.benchmark.playing import play_episodes
-from snooker_env.benchmark.results import strokes_of
+from snooker_env.benchmark.results import read_result, strokes_of
 from snooker_env.benchmark.tasks import TASKS
 from snooker_env.mcp import server as limits
 from snooker_env.mcp.games import FreeGame, JudgedGame
@@ -20,7 +20,7 @@ from snooker_env.physics.table import Table
 from snooker_env.play.routes import POST, answer
 from snooker_env.players import decision_seeds, player
 from snooker_env.players.cue_stroke import cue_strokes
-from snooker_env.render import COLOURS
+from snooker_env.render.palette import COLOURS
 from tests.processes import ROOT
 
 pytest.importorskip("mcp")

@@ -160,7 +160,7 @@ def _read_record(saved, options):
     except ValueError as error:
         raise saved.refuse_file(f"must be a model saved by Stable-Baselines3 ({error})") from None
     options = UNKNOWN | options
-    return Trained(None, saved.algorithm[1], options, steps, gamma, seed, imitated=None, start=None)
+    return Trained(None, saved.algorithm[1], options, steps, gamma, seed, imitated=None)
 
 
 def _number_in(file, name):

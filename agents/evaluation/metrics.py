@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.benchmark import FIGURES
+from snooker_env.benchmark.rollouts import FIGURES
 from snooker_env.benchmark.statistics import Resamples, bound_if_none, figure, iqm
 
 from .entrants import Entrant

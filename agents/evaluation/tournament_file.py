@@ -6,8 +6,8 @@ Software, machine, command, commit and date are as in a benchmark result (``docs
 from datetime import datetime, timezone
 from itertools import groupby
 
-from snooker_env.benchmark import read_result
 from snooker_env.benchmark.provenance import commit, machine, software
+from snooker_env.benchmark.results import read_result
 from snooker_env.benchmark.schema import faults_of_fields
 from snooker_env.checks import refuse
 

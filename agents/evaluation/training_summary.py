@@ -6,7 +6,7 @@ import numpy as np
 
 from agents._lib.tables import text_table
 from snooker_env import player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.players.search_player import BUDGET, SearchPlayer
 
@@ -64,23 +64,19 @@ def _better(a, b):
     return a["points_a_visit"] - b["points_a_visit"] > 2.0 * error
 
 
-def conclusion(agent, steps, imitated, figures, start=None):
+def conclusion(agent, steps, imitated, figures):
     """State the result in one sentence, and one on the planner. Claims a difference from two standard errors on.
-
-    ``imitated``: positions of expert iteration; ``start``: origin of its weights (``models.load_weights``) or None.
-    """
-    return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
+    ``imitated``: positions of expert iteration."""
+    return _of_the_agent(agent, steps, imitated, figures) + _of_the_planner(figures)
 
 
-def _of_the_agent(agent, steps, imitated, figures, start):
+def _of_the_agent(agent, steps, imitated, figures):
     trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
 
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
     begun = f" after {imitated:,} positions of expert iteration" if imitated else ""
-    if start:
-        begun = f" on top of the {start['shots']:,} of {start['model']}"
     practice, visits = f"{steps:,} shots of training{begun}", f"{trained['visits']} visits"
     after = f"With {practice}, {agent}"
     unsure = f"{visits} are too few to show that {agent}, with {practice}, is better than"

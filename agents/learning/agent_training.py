@@ -1,7 +1,6 @@
 """How is an agent of ``hyperparams/`` trained? By expert iteration, if its recipe says so, then by PPO, rollout by rollout."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
@@ -13,7 +12,6 @@ from ..features.observed import training_tables
 from .expert_iteration import ExpertIteration, judge_rewards
 from .hyperparameters import Recipe
 from .loop import Part
-from .models import load_weights
 from .run_folder import load_model, read_checkpoint, save_checkpoint
 
 POINTS_OF_THE_CURVE = 20
@@ -109,19 +107,14 @@ def recipe_of(settings):
         chosen["physics"] = physics_option(settings.physics)
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
     numbers = {key: value for key, value in numbers.items() if value}
-    if settings.start:
-        if settings.imitate > 0:
-            wanted = "must be 0 or left out with --start, whose weights are already trained"
-            raise refuse("imitate", settings.imitate, wanted)
-        numbers["imitation"] = 0
-    elif settings.imitate >= 0:
+    if settings.imitate >= 0:
         numbers["imitation"] = settings.imitate
     recipe = Recipe.of(settings.agent, settings.set, chosen, **numbers)
     if recipe.imitation and not recipe.expert:
         raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: it has no expert iteration")
-    if recipe.expert and not recipe.imitation and not settings.start:
+    if recipe.expert and not recipe.imitation:
         why = "PPO needs the value that expert iteration learns"
-        raise refuse("imitate", 0, f"must be 1 or more for {recipe.name} without --start: {why}")
+        raise refuse("imitate", 0, f"must be 1 or more for {recipe.name}: {why}")
     return recipe
 
 
@@ -142,8 +135,6 @@ class AgentTraining:
             self.model = load_model(out, state, recipe.algo, self.tables, settings.seed)
         else:
             self.model = recipe.new_model(self.tables, settings.seed)
-            if settings.start:
-                load_weights(self.model, Path(settings.start))
         self.model.tensorboard_log = str(out / "tb")
         *before, last = state["parts"] if state else [None]
         self.expert = None

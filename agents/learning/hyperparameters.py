@@ -133,8 +133,7 @@ class Recipe:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 also saves and restores additional attributes
         model.recipe, model.env_options = self.name, dict(self.env_kwargs)
-        # origin of its weights, see ``models.load_weights``; positions of expert iteration
-        model.start, model.imitated = None, 0
+        model.imitated = 0  # positions of expert iteration
         return model
 
     def new_network(self, observation_space, action_space):

@@ -22,16 +22,18 @@ from snooker_env.benchmark import count_shots
 from snooker_env.checks import choice, integer, refuse
 from snooker_env.planning import Planner, Positions, processors
 from snooker_env.planning.learned import frame_strokes
+from snooker_env.planning.learned.frame_strokes import FrameStrokes
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
-from snooker_env.players import VISITS, Strokes
+from snooker_env.players import FRAMES, VISITS, Strokes
 from snooker_env.players.player import place_cue_balls
 from snooker_env.players.search_player import SearchPlayer
 from snooker_env.players.stroke_value_player import StrokeValuePlayer
+from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
+from .frame_self_play import play_frames
 from .hyperparameters import changes_of
 from .rounds import Perceptron, Rounds, arrays_of, descend, shares_of_parts
-from .stroke_frames import try_frames
 
 AGENT = "stroke_value"
 STROKES_EACH, PARTS = 8, 8
@@ -142,6 +144,44 @@ def try_visits(layers, noise, cue, seeds, rng):
     return tuple(map(np.concatenate, (kept_seen, kept_worth, kept_table)))
 
 
+def try_frames(learned, noise, cue, seeds, other, rng):
+    """Play frames from the tables ``seeds``, with the layers ``learned``, against ``other``: the name of a player, or None for
+    itself, in which case both sides count. Returns as ``try_visits``; a stroke's worth [points] is that of the ``tactician``,
+    expected points minus the opponent's."""
+    options = sn.Options(task="frame", **FRAMES, cue=cue, miss="clear_path", noise=noise)
+    known = options.but(conditions="fixed")  # a player does not know the constants of a table
+    player, judge = StrokeValuePlayer(learned).at(known), Tactician().at(known).judge
+    search: FrameStrokes = player.search
+    for value in (search.values.value, search.worth.value):
+        value.threads = processors()
+    rows = []
+
+    def act(tables, mine, at, keys):
+        strokes, compared, start = player.decide_frames(at, keys)
+        here = [k for k, one in enumerate(compared) if one is not None and len(one.strokes) >= BEST + OTHERS]
+        if here:
+            looked = search.look(start[here], keys[here])
+            scores = np.where(looked.there, search.scores(looked.seen), -np.inf)
+            order, every = np.argsort(-scores, axis=1, kind="stable"), np.arange(len(here))[:, None]
+            picks = order[:, : BEST + OTHERS]
+            for j, count in enumerate(looked.there.sum(axis=1).tolist()):
+                picks[j, BEST:] = rng.choice(order[j, BEST:count], OTHERS, replace=False)
+            which = np.repeat(np.arange(len(here)), picks.shape[1] * ERRORS)
+            trials = np.repeat(looked.strokes[every, picks].reshape(-1, 5), ERRORS, axis=0)
+            met = judge.noise.draw_errors(rng, len(which))
+            worth = judge.gains(start[here], which, trials, met)[:, 1].reshape(*picks.shape, ERRORS)
+            seen = looked.seen[every, picks].astype(np.float16)
+            rows.append((seen, worth.mean(axis=2).astype(np.float32), seeds[mine[here]]))
+        for k, one in enumerate(compared):
+            if one is not None and rng.random() < EXPLORE:
+                strokes.values[k] = one.strokes.values[rng.integers(min(AMONG, len(one.strokes)))]
+        return strokes
+
+    against = None if other is None else sn.player(other).at(known)
+    play_frames(options.rules, int(seeds[0]), len(seeds), act, against, processors())
+    return tuple(map(np.concatenate, zip(*rows, strict=True)))
+
+
 @dataclass(frozen=True)
 class StrokeSettings:
     """Settings of a run's rounds."""
@@ -241,8 +281,7 @@ class FrameRounds(StrokeRounds):
 
     def tried_on(self, noise, part, seeds, rng):
         learned, other = StrokeLayers(self.visits.layers, self.layers), AGAINST[part % len(AGAINST)]
-        tried = BEST, OTHERS, ERRORS, EXPLORE, AMONG
-        return try_frames(learned, noise, self.settings.cue, seeds, other, tried, rng, processors())
+        return try_frames(learned, noise, self.settings.cue, seeds, other, rng)
 
     def seems(self, seen):
         return POINTS * seen[..., 0]

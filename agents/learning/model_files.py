@@ -36,8 +36,6 @@ class Trained:
     seed: int | None
     imitated: int | None
     """Positions of expert iteration; None: unknown."""
-    start: dict | None
-    """Origin of its initial weights, see ``models.load_weights``."""
 
     @property
     def action_space(self):
@@ -46,14 +44,10 @@ class Trained:
 
 
 def _options(field, value):
-    for key in _dict(field, value):
-        choice(f"key of {field}", key, ENV_OPTIONS)
-    return value
-
-
-def _dict(field, value):
     if not isinstance(value, dict):
         raise refuse(field, value, "must be a dict")
+    for key in value:
+        choice(f"key of {field}", key, ENV_OPTIONS)
     return value
 
 
@@ -68,10 +62,9 @@ KEPT = {
     "gamma": lambda field, value: number(field, value, 0, 1),
     "seed": _count,
     "imitated": _count,
-    "start": _dict,
 }
 """The entries read, with the check of each."""
-MAY_BE_NONE = ("seed", "imitated", "start")
+MAY_BE_NONE = ("seed", "imitated")
 
 
 class _MismatchError(Exception):

@@ -1,12 +1,10 @@
-"""Where are trained models? There are pre-trained ones, the model of a run's folder, and weights to start from."""
+"""Where are trained models? There are pre-trained ones, and the model of a run's folder."""
 
 import io
 from pathlib import Path
 
-from agents._lib.files import read_json
 from snooker_env.checks import refuse
 
-from .hyperparameters import ACTION_OPTIONS
 from .model_files import read
 
 POLICY = "policy.npz"
@@ -43,45 +41,6 @@ def load_trained(path, field):
     if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")
     return trained
-
-
-def load_weights(model, path):
-    """Load the weights of another model with this network and actions; ``model.start`` records their origin.
-
-    Raises ValueError.
-    """
-    other = load_trained(path, "start")
-    if not isinstance(other.policy, type(model.policy)):
-        wanted = f"must be a model of {model.recipe}, or of another agent with the same network"
-        raise refuse("start", str(path), f"{wanted}, not of {other.recipe}")
-    if other.policy.observation_space != model.policy.observation_space:
-        seen = "must be a model with the same observation as this one: both with the table's constants, or both without"
-        raise refuse("start", str(path), seen)
-    spaces = other.action_space == model.action_space
-    if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
-        both = [one.env_options for one in (model, other)]
-        mine, its = ({key: one[key] for key in ACTION_OPTIONS if key in one} for one in both)
-        raise refuse("start", str(path), f"must be a model with actions {mine}, not {its}")
-    weights = other.policy.state_dict()
-    model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
-    model.start = {"model": str(path), "shots": other.num_timesteps}
-    model.start |= {
-        "imitated": other.imitated,
-        "start": other.start,
-        "simulated_shots": _count_training_shots(path),
-    }
-
-
-def _count_training_shots(path):
-    """All shots simulated in the training of a run's model, from the run's figures; None if unknown."""
-    file = path / "results.json" if path.is_dir() else path.with_name("results.json")
-    if not path.is_dir() and path.name != "model.zip":
-        return None
-    try:
-        shots = read_json("start", file, "must be JSON")["simulated_shots"]
-    except (ValueError, KeyError, TypeError):
-        return None
-    return shots if isinstance(shots, int) else None
 
 
 def zip_model(model):

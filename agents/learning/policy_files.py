@@ -84,4 +84,4 @@ def _describe(about, layers):
         "seed": integer("about.seed", about["seed"], 0, 2**64),
     }
     options = about["env_options"] | {"action": "discrete"}
-    return Trained(network, about["trainer"], options, **numbers, imitated=None, start=None)
+    return Trained(network, about["trainer"], options, **numbers, imitated=None)

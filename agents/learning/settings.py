@@ -44,9 +44,6 @@ class Settings:
     )
     observe_conditions: bool = option(False, "observe the constants of the table; with --conditions drawn")
     imitate: int = option(-1, "positions of expert iteration before PPO; -1: the recipe's number")
-    start: str = option(
-        "", "initial weights: a model with the same network, its .zip or run folder (read as plain data)"
-    )
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
     eval_visits: int = option(500, f"visits of the final evaluation on held-out tables, at most {HELD_OUT}")
 

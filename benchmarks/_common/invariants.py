@@ -22,38 +22,8 @@ from snooker_env.physics.columns import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_
 from snooker_env.physics.engine import EventKind, Status
 from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
-(
-    FINITE,
-    CLOCK,
-    JUMP,
-    ENERGY,
-    PHASE,
-    ALL,
-    MOMENTUM,
-    PARTING,
-    OVERLAP,
-    CUSHION,
-    OUTSIDE,
-    BELOW,
-    REST_TIME,
-    ACCOUNT,
-) = range(14)
-NAMES = (
-    "finite",
-    "clock",
-    "jump",
-    "energy at impact",
-    "energy between",
-    "energy of all",
-    "momentum",
-    "parting",
-    "overlap",
-    "in cushion",
-    "off the table",
-    "below the bed",
-    "rest",
-    "account",
-)
+FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM = range(7)
+PARTING, OVERLAP, CUSHION, OUTSIDE, BELOW, REST_TIME, ACCOUNT = range(7, 14)
 WHAT = {
     "finite": "numbers that are not finite",
     "clock": "time going backwards [s]",
@@ -70,16 +40,12 @@ WHAT = {
     "rest": "speed (v + R w) left at the reported time of rest [m/s]",
     "account": "balls whose place, fate or log does not add up",
 }
+NAMES = tuple(WHAT)
 LEAST = 1e-5
 LEAST_ENERGY = 1e-18
 """Balls with a smaller share of the shot's energy count as at rest, up to rounding."""
-_BALL_BALL, _CUSHION, _JAW, _POT = (
-    int(EventKind.BALL_BALL),
-    int(EventKind.CUSHION),
-    int(EventKind.JAW),
-    int(EventKind.POT),
-)
-_DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
+_BALL_BALL, _CUSHION, _JAW = map(int, (EventKind.BALL_BALL, EventKind.CUSHION, EventKind.JAW))
+_POT, _DROP, _RETURN = map(int, (EventKind.POT, EventKind.DROP, EventKind.RETURN))
 
 
 @kernel

@@ -1,10 +1,8 @@
 """How well do the levels of ``noise`` play? Pot rates by distance and cut, direction errors, placement, play,
 beside what is published.
 
-    python -m benchmarks.execution [--levels professional robot ...] [--strokes 4000] [--visits 100] [--seed
-    0]
+    python -m benchmarks.execution [--levels professional robot ...] [--strokes 4000] [--visits 100] [--seed 0]
         [--json FILE] [--out FOLDER]
-    python -m benchmarks.execution --fit
 
 Every pot is aimed at the middle of all the aims that pot it without errors, and struck many times with the
 errors of a level: made is what goes into its pocket, with the cue ball on the table. Speeds are as played,
@@ -22,11 +20,6 @@ Published: professionals pot 88 to 95 % of what they choose and 50 to 65 % of lo
 direction, for a corner pocket with an effective half window of 22 mm; the pot rates "derived" are computed
 so, by geometry. A robot, built by the authors of the physics, potted 90 % and left the cue ball 100 to 200 mm
 from its target (doi 10.1109/TMECH.2015.2461547; neither its shots nor its other errors are in its abstract).
-
-``--fit``: the total direction error, half of its variance aim and half squirt, that meets these figures on
-the pockets as they are; for the robot its speed error, too. A pot that loses the cue ball is a miss, which
-matters where the cue ball follows a straight long pot; the derivation does not model that, so the errors are
-also searched with these pots counted as made.
 """
 
 import numpy as np
@@ -153,17 +146,8 @@ def main():
     parser.add_argument("--visits", type=at_least(1), default=100, help="visits of each level in play [100]")
     parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="[paper]")
     parser.add_argument("--table", choices=("match", "tight"), default="match", help="[match]")
-    parser.add_argument(
-        "--fit", action="store_true", help="search the errors that meet the published figures, and no more"
-    )
     options = parser.options()
     physics, table = Physics.preset(options.physics), options.table
-    if options.fit:
-        found = published.fit_published(options.strokes, physics, table)
-        for what, values in found:
-            print(f"{what:94s}" + "  ".join(f"{value:.4f}" for value in values))
-        save_figures(options, {"fit": found})
-        return
     shots = [aimed(pot, physics, table, speed) for pot in POTS for speed in (None, FIRM)]
     rows = {
         level: measure_level(level, shots, options.strokes, options.seed, physics, table)

@@ -1,7 +1,7 @@
 """Which pots show how well a level of ``noise`` plays, how often is each made, and where does the cue ball
 stop? Two balls, Monte Carlo."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import degrees, erf, hypot, radians, sqrt
 
 import numpy as np
@@ -107,8 +107,6 @@ class Aimed:
     """Where the cue ball stops without errors [m]; NaN in a pocket."""
     meets: np.ndarray
     """Where it lies as it meets the ball [m]."""
-    in_off: bool
-    """Does a pot count although the cue ball is lost?"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +130,7 @@ class Rolls:
         return sqrt(squares.sum()), *np.sqrt(squares).tolist()
 
 
-def played(pot, stroke, turns, physics, table, *, level: str | Noise = "none", seed=0, in_off=False):
+def played(pot, stroke, turns, physics, table, *, level: str | Noise = "none", seed=0):
     """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``turns`` [rad], with the
     errors of a ``level``."""
     n = len(turns)
@@ -142,10 +140,10 @@ def played(pot, stroke, turns, physics, table, *, level: str | Noise = "none", s
     state = shots.struck(seed, errors=level)
     end = sn.simulate_batch(shots.positions, *state, table=table, physics=physics)
     cue = np.where(end.on_table[:, :1], end.positions[:, 0], np.nan)
-    return (end.potted[:, 1] == pot.pocket) & (end.on_table[:, 0] | in_off), cue
+    return (end.potted[:, 1] == pot.pocket) & end.on_table[:, 0], cue
 
 
-def aimed(pot, physics, table, speed=None, in_off=False):
+def aimed(pot, physics, table, speed=None):
     """The pot with its stroke: no spin, ``speed`` [m/s] or as played."""
     start, aim_point = pot.positions, POCKET_AIMS[pot.pocket, :2]
     stroke = np.array([pot.speed if speed is None else speed, 0.0, 0.0, 0.0])
@@ -153,19 +151,13 @@ def aimed(pot, physics, table, speed=None, in_off=False):
     if len(settled.ball) == 0:
         raise RuntimeError(f"no aim sends the ball of {pot.name!r} to its pocket")
     stroke, fan = settled.stroke[0], np.linspace(-REACH, REACH, FAN)
-    made, _ = played(pot, stroke, fan, physics, table, in_off=in_off)
+    made, _ = played(pot, stroke, fan, physics, table)
     first, last = _widest(made)
     stroke[1] += 0.5 * (fan[first] + fan[last])
     _, stops = played(pot, stroke, np.zeros(1), physics, table)
     way = aim_point - start[1]
-    return Aimed(
-        pot,
-        stroke,
-        0.5 * (fan[last] - fan[first] + fan[1] - fan[0]),
-        stops[0],
-        start[1] - 2 * R * way / hypot(*way),
-        in_off,
-    )
+    half = 0.5 * (fan[last] - fan[first] + fan[1] - fan[0])
+    return Aimed(pot, stroke, half, stops[0], start[1] - 2 * R * way / hypot(*way))
 
 
 def _widest(made):
@@ -180,9 +172,7 @@ def _widest(made):
 
 def rolls(shot, level, n, seed, physics, table):
     """The ``Rolls`` of n strokes with the errors of a level (any ``noise``)."""
-    made, cue = played(
-        shot.pot, shot.stroke, np.zeros(n), physics, table, level=level, seed=seed, in_off=shot.in_off
-    )
+    made, cue = played(shot.pot, shot.stroke, np.zeros(n), physics, table, level=level, seed=seed)
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]
@@ -217,12 +207,3 @@ def wilson(share, n):
     z = 1.96
     middle, reach = share + z * z / (2 * n), z * sqrt(share * (1 - share) / n + z * z / (4 * n * n))
     return (middle - reach) / (1 + z * z / n), (middle + reach) / (1 + z * z / n)
-
-
-def of_direction(deg, like, physics):
-    """The ``Noise`` ``like`` with a total direction error of ``deg``, whatever the speed: half of its variance is aim,
-    half the squirt of the tip error."""
-    each, slope = deg / sqrt(2.0), 2.5 / (3.5 + physics.end_mass_ratio)
-    return replace(
-        Noise.of(like), aim_deg=each, offset_mm=1e3 * physics.R * radians(each) / slope, growth=0.0
-    )

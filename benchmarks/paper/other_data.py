@@ -7,6 +7,7 @@ published table, itself computed), ``throw_domenech2023.csv`` and ``cushion_rebo
 published figures).
 """
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,10 @@ from scipy.optimize import minimize_scalar
 import snooker_env as sn
 from snooker_env.physics.parameters import MARLOW
 
-from ..fit_cushion.__main__ import DATA as REBOUNDS
 from .paper_shots import rolling
 
-FOLDER = REBOUNDS.parent
+FOLDER = Path(__file__).parents[1] / "data"
+REBOUNDS = FOLDER / "cushion_rebound.csv"
 POOL_R = 0.028575
 """Radius [m] of a pool ball, 2.25 in across."""
 DOMENECH: dict[str, Any] = {"R": 0.0305, "e_b": 0.968}
@@ -170,7 +171,7 @@ CUSHIONS = {
     "paper": lambda v0: rebound("paper", v0),
     "match": lambda v0: rebound("match", v0),
 }
-"""v0 -> rebound speed [m/s]. "match" was fitted to these data and others (``benchmarks.fit_cushion``), "paper" to
+"""v0 -> rebound speed [m/s]. "match" was fitted to these data and others (docs/physics/limits.md), "paper" to
 those below 1.5 m/s."""
 
 

@@ -16,7 +16,6 @@ from ..players.program import ProgramPlayer
 from ..players.resolver import PROGRAM, is_name
 from ..players.seen import SeenPlayer
 from ..players.weights import levels
-from .playing import BATCH
 from .schema import LABEL
 from .tasks import Task
 
@@ -105,11 +104,6 @@ class Agent:
     def program(self) -> bool:
         """Whether this is an external program."""
         return self.texts[0].startswith(PROGRAM)
-
-    @property
-    def batch(self) -> int:
-        """Number of episodes that the agent plays side by side."""
-        return 1 if self.program else BATCH
 
     def player(self, task: Task, run: int = 0) -> Player:
         """Return the player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play the task."""

@@ -1,18 +1,16 @@
 """Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 import re
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from .._lib.check import refuse
 from ..players import player as player_named
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import playing, schema
-from .agents import Agent, claims_player_name, is_player_name, seat
-from .playing import BATCH, COLUMNS, STROKES, Kept, PlayedEpisodes
+from .agents import claims_player_name, is_player_name
+from .playing import BATCH, COLUMNS, STROKES, Kept
 from .provenance import arithmetic
 from .results import complete, strokes_of
 from .schema import fault, faults_of_fields, shorten
@@ -23,7 +21,6 @@ MOST = 12  # faults of rows, and of strokes, that are named
 WORK, SHOTS, TOGETHER = 1e5, 100, 50
 """How many decisions known players make again, where ``SHOTS`` simulated shots count as one more decision: enough for a whole
 file, unless the budget is large. ``TOGETHER`` tables are played side by side."""
-SURE = 3.29  # standard errors that a fresh mean may be away: 99.9 %
 
 
 def faults(record: dict[str, Any], threads: int | None = None, *, asking: bool = True) -> list[str]:
@@ -205,7 +202,14 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     n = next((n for n, (a, b) in enumerate(pairs) if a.tobytes() != b.tobytes()), len(again))
                     which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
-            wrong += _of_class(result, shorten(source), played)
+            if agent["class"] in ("model_free", "foresight") and played.simulated:
+                shots = (
+                    f"{shorten(source)} simulated {played.simulated:,} shots for {played.decisions:,} strokes"
+                )
+                wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {shots}")
+            if agent["foresees"] != played.foresees:
+                must = f"must be {played.foresees}, as of {shorten(source)}"
+                wrong.append(f"agent.foresees = {agent['foresees']}: {must}")
             simulated += played.simulated
             rates += [played.simulated / played.decisions] if played.decisions else []
             work += played.decisions + played.simulated / SHOTS
@@ -219,44 +223,3 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
             must += ", as known players simulate when they are asked again"
             wrong = [fault("timing.simulated_shots", shots, must)]
     return _elsewhere(result, sorted(set(wrong))[:MOST] if len(wrong) > 1 else wrong)
-
-
-def afresh(
-    record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
-) -> tuple[float, float, list[str]]:
-    """Have the agent play on new seeds: the mean score, the standard error of its difference from the file, faults."""
-    if record["figures"] is None:
-        raise refuse("incomplete", record["incomplete"], "must be null to compare means")
-    played = _by(agent, record, range(seed, seed + episodes), threads)
-    runs, column, both = len(agent.sources), COLUMNS.index("score"), (record["rows"], played.rows)
-    of_file, fresh = (np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in both)
-    old, mean = of_file.mean(), float(fresh.mean())
-    error = float(np.sqrt(of_file.var(ddof=1) / len(of_file) + fresh.var(ddof=1) / len(fresh)))
-    near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
-    wrong = [f"figures.score.value = {old:g}: {near}"] if abs(mean - old) > SURE * error else []
-    return mean, error, wrong + _of_class(record, "it", played)
-
-
-def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes) -> list[str]:
-    """Refuse a class that the play contradicts, by simulated shots or foresight."""
-    agent, wrong = record["agent"], []
-    if agent["class"] in ("model_free", "foresight") and played.simulated:
-        shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-        wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {who} simulated {shots}")
-    if agent["foresees"] != played.foresees:
-        wrong.append(f"agent.foresees = {agent['foresees']}: must be {played.foresees}, as of {who}")
-    return wrong
-
-
-def _by(agent: Agent, result: dict[str, Any], seeds: Sequence[int], threads: int | None) -> PlayedEpisodes:
-    """Play these tables with every training seed of a result's agent."""
-    task, runs = TASKS[result["task"]], len(result["agent"]["sources"])
-    if len(agent.sources) != runs:
-        raise refuse("agent", ",".join(agent.texts), f"must have the {runs} training seeds of the file")
-    played = PlayedEpisodes([])
-    for run in range(runs):
-        with seat(agent, task, run) as player:
-            for first in range(0, len(seeds), agent.batch):
-                some = list(seeds[first : first + agent.batch])
-                played.add(playing.play_episodes(task, player, some, run, threads))
-    return played

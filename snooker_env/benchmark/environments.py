@@ -2,8 +2,6 @@
 
 from typing import Any, ClassVar
 
-from .._lib.types import RenderMode
-from ..envs.pictures import SIZE
 from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
 from .tasks import FREE, TASKS
@@ -16,10 +14,9 @@ class TaskEnv(SnookerEnv):
 
     TASK: ClassVar[str]
 
-    def __init__(
-        self, *, render_mode: RenderMode | None = None, render_size: tuple[int, int] = SIZE, **free: object
-    ):
-        super().__init__(TASKS[self.TASK].options(**free), render_mode=render_mode, render_size=render_size)
+    def __init__(self, **keywords: Any):
+        more = {name: keywords.pop(name) for name in ("render_mode", "render_size") if name in keywords}
+        super().__init__(TASKS[self.TASK].options(**keywords), **more)
 
 
 class TaskVectorEnv(SnookerVectorEnv):

@@ -4,53 +4,18 @@ from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import Any
 
+from .._lib.check import refuse_what
 from .._lib.text_tables import format_figure, markdown_table, text_table
 from .tasks import TASKS, Task
 
 WIDTH = 100
 FOLDER = "results/leaderboard"
-Table = tuple[list[str], list[list[str]]]  # heading and rows
-
 LEGEND = (
     "Ranked by adjusted, the mean score less luck, with its 95 % interval. anchor: should win nothing, has no rank. training: simulated "
     "shots of training (5 ×: of each of five seeds). shots: simulated shots a decision (d: declared, not counted). *: not official."
 )
-READ = """\
-Every result on the five tasks of [the benchmark](benchmark.md). A row is a file that holds every
-stroke, so that `check` can play each episode again.
-
-## How to read the tables
-
-* **adjusted** ranks the agents: the mean score [less luck](benchmark.md#less-luck). It has the
-  same expected value as the raw **score**, and varies less. Brackets hold the 95 % interval over
-  training seeds and episodes. Agents whose intervals overlap may be equally strong.
-* **class** says how an agent decides. `planning` simulates shots; `foresight` simulates none but
-  computes in closed form what each stroke would do; `model_free` does neither.
-* An `anchor` is a policy that should win nothing, and has no rank. It shows what a task pays without
-  skill: `random` strokes, one `constant` choice, the `softest` and the `hardest` stroke at the nearest
-  ball on, a deliberate foul (`away`, `softest_away`), and in frames `play_again`, a `ghost_ball` that
-  makes the opponent play again after every foul.
-* **training** counts the simulated shots of training (5 ×: of each of five seeds), **shots** those of
-  one decision; `d` marks a number that the author declared.
-* **result** links to the file, by its date. The file says which command, commit and machine made it.
-
-A file [cannot prove everything](benchmark.md#what-a-file-cannot-prove): to doubt a row, let its agent
-play on fresh seeds.
-"""
-SEND = """\
-## How to send in a result
-
-Play a task with your agent, then check the file:
-
-```console
-$ python -m snooker_env.benchmark run SnookerBreak-v0 --agent model.zip --trust --training-shots 50000 --label mine
-$ python -m snooker_env.benchmark check SnookerBreak-v0.mine.json
-```
-
-If the second command says `official`, open a pull request that adds the file to
-`results/leaderboard`. Say where others find the agent: its code, its weights, and the command that
-trained it. `bash results/make.sh leaderboard` makes this page.
-"""
+BEGIN, END = "<!-- tables -->", "<!-- /tables -->"
+"""``table --markdown`` writes everything on a page between these lines."""
 
 
 def is_anchor(result: dict[str, Any]) -> bool:
@@ -59,8 +24,10 @@ def is_anchor(result: dict[str, Any]) -> bool:
     return agent["class"] == "degenerate" or agent["label"] == "random"
 
 
-def board(results: Iterable[dict[str, Any]], task: Task, *, markdown: bool = False) -> Table:
-    """The table of a task, the best agent first; in Markdown with links to the files."""
+def board(
+    results: Iterable[dict[str, Any]], task: Task, *, markdown: bool = False
+) -> tuple[list[str], list[list[str]]]:
+    """Heading and rows of a task's table, the best agent first; in Markdown with links to the files."""
     mine = [one for one in results if one["task"] == task.id and one["figures"] is not None]
     mine.sort(key=lambda one: (-one["figures"]["adjusted"]["value"], one["agent"]["label"]))
     places = iter(range(1, len(mine) + 1))
@@ -112,11 +79,10 @@ def lines(results: Sequence[dict[str, Any]]) -> list[str]:
     return [*_tables(results, markdown=False), *wrap(LEGEND, WIDTH)]
 
 
-def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
-    """The leaderboard as a Markdown page, of results without faults. The page names the agents of ``awaited`` that lack a
-    result on some task."""
-    there = {(one["task"], one["agent"]["label"]) for one in results}
-    lacking = [label for label in awaited if any((task, label) not in there for task in TASKS)]
-    missing = [*wrap(f"Still missing on at least one task: {', '.join(lacking)}.", WIDTH), ""]
-    tables = _tables(results, markdown=True)
-    return "\n".join(["# Leaderboard", "", READ, *tables, *(missing if lacking else []), SEND])
+def page(text: str, results: Sequence[dict[str, Any]]) -> str:
+    """A Markdown page with the tables of results without faults between its marks. ValueError if it has none."""
+    before, begin, rest = text.partition(f"{BEGIN}\n")
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise refuse_what("markdown", "a page without marks", f"must hold the lines {BEGIN} and {END}")
+    return "\n".join([before + begin, *_tables(results, markdown=True), end + after])

@@ -87,11 +87,8 @@ class WatchedOpponent:
             assert isinstance(copies, Frames)
             values, places, nominated, decisions, declared = asked
             theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
-            copies.turn(
-                lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT),
-                out,
-                self._luck._crew,
-            )
+            ours = self._luck._crew
+            copies.turn(lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT), out, ours)
 
         self._luck.add(which, turn)
         return asked

@@ -19,21 +19,17 @@ LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_c
 def commit() -> str | None:
     """The commit of the checkout that the package is in, with "-dirty" if a tracked file is changed; None without one.
     Pages and kept results do not count: a command that makes several of them changes them on its way."""
-    here = Path(__file__).resolve().parents[2]
-    made = (":!results/*/*", ":!docs/*")
+    here, made = Path(__file__).resolve().parents[2], (":!results/*/*", ":!docs/*")
+
+    def git(*words: str) -> str:
+        command = ["git", "-C", str(here), *words]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
     try:
         if not (here / ".git").exists():
             return None
-        head, changed = (
-            subprocess.run(
-                ["git", "-C", str(here), *words], capture_output=True, text=True, check=True
-            ).stdout.strip()
-            for words in (
-                ("rev-parse", "HEAD"),
-                ("status", "--porcelain", "--untracked-files=no", "--", ".", *made),
-            )
-        )
-        return f"{head}-dirty" if changed else head
+        changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", *made)
+        return git("rev-parse", "HEAD") + ("-dirty" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         return None
 

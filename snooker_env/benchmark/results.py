@@ -145,49 +145,14 @@ def result_of(
 
 
 def write_result(path: str | Path, result: dict[str, Any]) -> None:
-    """Write a result as JSON, with one line for each row.
-
-    Parameters
-    ----------
-    path, result : str or Path, dict
-        The file, which is replaced in one step; what ``judge`` returns.
-
-    Examples
-    --------
-    >>> import os, tempfile
-    >>> from snooker_env.benchmark import read_result, write_result
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_result(os.path.join(folder, "result.json"), {"rows": [[0, 1]]})
-    ...     read_result(os.path.join(folder, "result.json"))
-    {'rows': [[0, 1]]}
-    """
+    """Write a result, as ``judge`` returns it, as JSON with one line for each row; the file is replaced in one step."""
     rows = ",\n".join("  " + json.dumps(row, separators=(",", ":")) for row in result["rows"])
     text = json.dumps(with_checksum(result) | {"rows": "@rows@"}, indent=1, allow_nan=False)
     write_atomic(path, text.replace('"@rows@"', f"[\n{rows}\n ]" if rows else "[]") + "\n")
 
 
 def read_result(path: str | Path) -> Any:
-    """Read a result file; ``faults`` checks its content.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    object
-        The content. ValueError if the file is not JSON in UTF-8, contains NaN or Infinity, or repeats a key of an
-        object; OSError if it cannot be read.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import read_result
-    >>> read_result("nothing.json")
-    Traceback (most recent call last):
-    ...
-    FileNotFoundError: [Errno 2] No such file or directory: 'nothing.json'
-    """
+    """Read a result file, whose content ``faults`` checks. ValueError if it is no strict JSON; OSError if it cannot be read."""
     return read_json(path)
 
 

@@ -17,10 +17,7 @@ from .playing import Decider, rounds
 from .statistics import adjust
 from .tasks import HELD_OUT_SEED
 
-CENTURY = 100
-"""Points of a century break."""
-MAXIMUM = 147
-"""Points of the largest break with 15 reds: a black after each red, then the colours."""
+CENTURY, MAXIMUM = 100, 147  # points of a century break, and of the largest with 15 reds
 EASY = POT_WINDOWS["easy"][0]
 HIGH = 6  # pink and black are colours of high value
 FIGURES = {
@@ -38,50 +35,20 @@ FIGURES = {
 
 @dataclass
 class PlayedStrokes:
-    """All strokes of a number of visits, in the order of play, as ``play_visits`` returns them.
-
-    Attributes
-    ----------
-    visits : int
-        Number of visits.
-    visit, number : int64 (n,)
-        Index of the visit of each stroke, and its number in the visit, from 0.
-    points : float64 (n,)
-        Points scored; 0 for a miss or a foul.
-    foul, cleared : bool (n,)
-        Whether the stroke was a foul, and whether no object ball was left.
-    ball_on : int64 (n,)
-        The ball on, a ``BallOn``.
-    cue : float64 (n, 2)
-        Position of the cue ball after the stroke [m]; NaN if it was potted.
-    tolerance : float64 (n,)
-        Tolerance of the aim of the widest direct pot after the stroke [rad]; 0 if there was none.
-    luck : float64 (n,)
-        Points of the stroke and value of the position that it left, less the mean of this sum over fresh errors of the
-        same stroke [points]. The first stroke includes the luck of the table dealt.
-    decision_seconds, simulated : float, int
-        Time that all decisions of the player took [s]; shots that this process simulated for them.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import play_visits
-    >>> strokes = play_visits("ghost_ball", 2, layout="colours")
-    >>> strokes.visits, strokes.a_visit(strokes.points).shape
-    (2, (2,))
-    """
+    """All n strokes of a number of visits, in the order of play."""
 
     visits: int
-    visit: Ints
-    number: Ints
-    points: Floats
-    foul: Bools
-    ball_on: Ints
-    cleared: Bools
-    cue: Floats
-    tolerance: Floats
-    luck: Floats
-    decision_seconds: float
-    simulated: int = 0
+    visit: Ints  # (n,): index of the visit of each stroke
+    number: Ints  # (n,): its number in the visit, from 0
+    points: Floats  # (n,): scored; 0 for a miss or a foul
+    foul: Bools  # (n,)
+    ball_on: Ints  # (n,): a ``BallOn``
+    cleared: Bools  # (n,): whether no object ball was left
+    cue: Floats  # (n, 2): position of the cue ball after the stroke [m]; NaN if it was potted
+    tolerance: Floats  # (n,): of the aim of the widest direct pot after the stroke [rad]; 0 if there was none
+    luck: Floats  # (n,): points, and value of the position left, less their mean over fresh errors; at first also of the deal
+    decision_seconds: float  # of all decisions of the player [s]
+    simulated: int = 0  # shots that this process simulated for them
 
     @property
     def has_scored(self) -> Bools:
@@ -138,6 +105,8 @@ def play_visits(
     Returns
     -------
     PlayedStrokes
+        Arrays (n,) of all n strokes in the order of play, among them ``visit``, ``points``, ``foul``, ``cleared`` and
+        ``luck`` [points]; ``a_visit(values)`` sums their values over visits, float64 (visits,).
 
     Examples
     --------
@@ -198,25 +167,7 @@ def counts(s: PlayedStrokes) -> dict[str, Floats]:
 
 
 def summary(strokes: PlayedStrokes) -> dict[str, Any]:
-    """Mean figures of visits.
-
-    Parameters
-    ----------
-    strokes : PlayedStrokes
-        All strokes of the visits.
-
-    Returns
-    -------
-    dict of str to float, int or None
-        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits.
-        None where a mean has no cases.
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark import play_visits, summary
-    >>> summary(play_visits("random", 3, layout="colours"))["visits"]
-    3
-    """
+    """Mean figures of visits by name, None where a mean has no cases. Names that end in "_se" are standard errors over visits."""
     each = counts(strokes)
     totals = {name: float(values.sum()) for name, values in each.items()}
     means: dict[str, Any] = {

@@ -9,7 +9,7 @@ from .._lib.check import refuse
 from ..players.program import AgentError
 from .agents import Agent, seat
 from .checking import faults
-from .playing import PlayedEpisodes, play_episodes
+from .playing import BATCH, PlayedEpisodes, play_episodes
 from .provenance import machine
 from .results import read_result, result_of, strokes_of, write_result
 from .tasks import Task
@@ -101,10 +101,11 @@ def judge(
 
 def _play_run(task, agent, run, seeds, played, alone, threads, after_batch):
     """Play the episodes of one training seed in batches; the first player is also timed on one table."""
+    batch = 1 if agent.program else BATCH
     with seat(agent, task, run) as player:
         while len(played.rows) < (run + 1) * len(seeds):
             first = len(played.rows) - run * len(seeds)
-            played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
+            played.add(play_episodes(task, player, seeds[first : first + batch], run, threads))
             after_batch()
         for seed in seeds if run == 0 else ():
             if alone.decisions < ONE_TABLE:
@@ -125,6 +126,5 @@ def read_earlier(
         what = f"{agent.label} on {task.id} with {episodes} episodes"
         raise refuse("out", str(path), f"must be a result of {what} to go on with")
     strokes, timing = strokes_of(result), result["timing"]
-    decisions, shots = sum(map(len, strokes)), timing["simulated_shots"]
-    cost = decisions, timing["seconds"], shots
+    cost = sum(map(len, strokes)), timing["seconds"], timing["simulated_shots"]
     return result, PlayedEpisodes(result["rows"], strokes, *cost, result["agent"]["foresees"])

@@ -17,10 +17,7 @@ from ..game.layouts import plan_of
 from ..tasks.options import Options
 
 HELD_OUT_SEED = 1_000_000
-"""Seed of the first judged table."""
-FRESH_SEED, SEEDS_END = 1_500_000, 2_000_000
-"""``check --fresh`` draws its seeds from the first one on. Seeds from ``HELD_OUT_SEED`` on and below the last one are for
-judging alone, not for training."""
+"""Seed of the first judged table. A million seeds from it on are for judging alone, not for training."""
 FREE = ("action", "aim", "observation", "elevation", "placement", "speeds", "says")
 """Options that an agent may choose in every task: its observation, and how its actions are read."""
 
@@ -98,7 +95,7 @@ class Task:
         """Return the seeds of the first n judged tables; in whole frames, those of the errors. ValueError if n is too large."""
         integer("episodes", n, 1, 2**20)
         first, alike = HELD_OUT_SEED, plan_of(self.judged_layout).in_hand
-        return list(range(first, first + n)) if alike else tables_of(self.judged_layout, n)
+        return list(range(first, first + n) if alike else tables_of(self.judged_layout, n))
 
     @property
     def most(self) -> int:
@@ -150,7 +147,8 @@ def task_of(name: object) -> Task:
 
 
 @lru_cache(maxsize=32)
-def _tables_of(layout: str, n: int) -> tuple[int, ...]:
+def tables_of(layout: str, n: int) -> tuple[int, ...]:
+    """Seeds of n tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not."""
     plan, seeds, known = plan_of(layout), [], set()
     for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + n + 20 * min(n, HELD_OUT)):  # brings all of a bank
         positions, _ = deal(plan, np.random.default_rng(seed))
@@ -161,11 +159,6 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
             if len(seeds) == n:
                 return tuple(seeds)
     raise refuse("visits", n, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
-
-
-def tables_of(layout: str, visits: int) -> list[int]:
-    """Seeds of tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not."""
-    return list(_tables_of(layout, visits))
 
 
 def most_points(layout: str) -> int:

@@ -3,7 +3,7 @@
 import argparse
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,12 +11,26 @@ from .._lib.cache import CACHE_FOLDER
 from .._lib.command import exit_code
 from .._lib.jit import ENTRIES, collecting_no_garbage
 from .._lib.notices import warming_up
+from ..advice.room import room_for
+from ..envs.snooker import SnookerEnv
+from ..game.apply_ruling import settle_table
+from ..game.balls import REDS_MASK
+from ..game.frame import Frame
+from ..game.in_hand import place_cue
+from ..game.pots import pots as pots_of
+from ..game.referee import Situation, Stroke, judge
+from ..game.snookered import is_snookered
+from ..planning import Planner, Position, Positions, clear_paths, obstructions, pots, prospects_of
+from ..planning.proposals import at_balls, over_cushions
+from ..planning.visit_judge import VisitJudge
+from ..planning.worth import best_places, decide
+from ..players import player
 from ..progress import ticking
 from ..simulation import simulate
 from ..simulation.impacts import collide_balls, collide_cushion, strike
-
-if TYPE_CHECKING:
-    from ..envs.snooker import SnookerEnv
+from ..tasks.noise import Spread
+from ..tasks.options import Options
+from ..tasks.pot_chance import pot_chances
 
 
 class _Still:
@@ -52,11 +66,8 @@ def warmup() -> None:
         _plan(env, match)
 
 
-def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
+def _play_environments() -> tuple[SnookerEnv, SnookerEnv]:
     """Visits, frames against opponents, a match: the last frame, and the match."""
-    from ..envs.snooker import SnookerEnv
-    from ..planning import Position
-
     env = SnookerEnv(action="discrete", conditions="drawn")
     env.reset(seed=0)
     env.action_masks()
@@ -93,38 +104,20 @@ def _play_environments() -> "tuple[SnookerEnv, SnookerEnv]":
     return env, match
 
 
-def _ask_rules(env: "SnookerEnv") -> None:
+def _ask_rules(env: SnookerEnv) -> None:
     """The referee, and what rules ask of a table."""
-    from ..game.apply_ruling import settle_table
-    from ..game.balls import REDS_MASK
-    from ..game.frame import Frame
-    from ..game.in_hand import place_cue
-    from ..game.pots import pots
-    from ..game.referee import Situation, Stroke, judge
-    from ..game.snookered import is_snookered
-
     frame = Frame.start()
     frame.play(Stroke())
     frame.concede(0)
-    pots(env.positions, env.on_table, REDS_MASK)
+    pots_of(env.positions, env.on_table, REDS_MASK)
     place_cue(env.positions, env.on_table, 0.0, 0.0)
     settle_table(env.positions, env.on_table, Situation(), Stroke())
     judge(Situation(), Stroke())
     is_snookered(env.positions, env.on_table, REDS_MASK)
 
 
-def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
+def _plan(env: SnookerEnv, match: SnookerEnv) -> None:
     """Planning, players and advice."""
-    from ..advice.room import room_for
-    from ..planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
-    from ..planning.proposals import at_balls, over_cushions
-    from ..planning.visit_judge import VisitJudge
-    from ..planning.worth import best_places, decide
-    from ..players import player
-    from ..tasks.noise import Spread
-    from ..tasks.options import Options
-    from ..tasks.pot_chance import pot_chances
-
     env.reset(seed=0)
     at, both, planner = Positions.of(env), Positions.of(match), Planner({"action": "discrete"})
     planner.play(at, [0], [0])

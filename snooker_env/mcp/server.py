@@ -23,8 +23,7 @@ from ..planning import Positions, pots
 from ..play.service import OFFERED, BusyError
 from ..players.cue_stroke import cue_strokes
 from ..players.seen import SeenPlayer
-from ..render.pygame_balls import BOLD, pygame_, typeset
-from ..render.pygame_view import View, draw
+from ..render.pygame_view import BOLD, View, draw, pygame_, typeset
 from ..render.scene import scene
 from ..simulation import SimulationError
 from ..tasks import foreseen as columns

@@ -60,7 +60,7 @@ class Physics:
         Sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     mu_r : float
         Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, 0.0127 g, on one
-        table; a heated one with new cloth needs about 0.010 (``python -m benchmarks.fit_cushion``).
+        table; a heated one with new cloth needs about 0.010 (docs/physics/constants.md).
     spin_decel : float
         Deceleration of the spin about the vertical [rad/s^2], in every state, >= 0 [MJP14 eq. 21]. With 0
         such a spin stays: a shot ends when no ball moves across the table.
@@ -172,7 +172,7 @@ class Physics:
 
         "paper": [MJP14] and [MJP10]. "match": measured snooker: e_b 0.94, Marlow's mu_bb(s), and cushion and cloth fitted
         to rebounds up to 3.40 m/s [MJP10, Fig. 7a] and to how far hard throws and a ball off a ramp run on full-size
-        tables (``python -m benchmarks.fit_cushion``). "carom": a heated three-cushion table and its balls, fitted to 61
+        tables (docs/physics/constants.md). "carom": a heated three-cushion table and its balls, fitted to 61
         tracked shots of one match (``python -m benchmarks.real_shots``)."""
         choice("physics", name, PRESETS)
         return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)

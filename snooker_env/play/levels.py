@@ -12,7 +12,7 @@ class Level(NamedTuple):
     agent: str
     noise: NoiseName
     style: str
-    elo: int  # of ``python -m benchmarks.levels``, the first 1000
+    elo: int  # docs/play/page.md says how it was measured; the first has 1000
 
 
 LEVELS = (

@@ -7,13 +7,12 @@ from textwrap import wrap
 
 import numpy as np
 
-from .._lib.check import integer
-from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, has_lines
+from ..geometry import COLOUR_SPOTS
+from .outline import BAULK_LINE, D_ARC, extent, has_lines
 from .palette import LETTERS
 from .scene import Scene
 
-WIDTH = 100  # default number of characters a line
-
+WIDTH = 100  # characters a line
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
 _LINE, _ARC, _SPOT, _PATH, _POCKET = "│", "·", "+", ".", "O"
 
@@ -49,13 +48,13 @@ class _Grid:
                 self.mark(a + part * (b - a), character)
 
 
-def ansi(scene: Scene, width: int = WIDTH) -> str:
+def ansi(scene: Scene) -> str:
     """The scene as lines of text, with status and legend."""
-    grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
+    grid = _Grid(WIDTH - 2, scene.table)
     if has_lines(scene.table):
         grid.line(BAULK_LINE, _LINE)
         grid.line(D_ARC, _ARC)
-        for spot in SPOT_MARKS:
+        for spot in COLOUR_SPOTS:
             grid.mark(spot, _SPOT)
     for points in scene.paths.values():
         grid.line(points, _PATH)
@@ -63,7 +62,7 @@ def ansi(scene: Scene, width: int = WIDTH) -> str:
     lines = _frame(grid, scene.table)
     if scene.text:
         lines.append(scene.text)
-    lines += wrap(_LEGEND, width)
+    lines += wrap(_LEGEND, WIDTH)
     if hidden:
         lines.append("hidden: " + ", ".join(hidden))
     return "\n".join(lines)

@@ -13,19 +13,10 @@ from ..physics.columns import JAW_RADIUS
 from ..physics.table import Table, TableLike
 from .palette import COLOURS, LETTERS, PALETTE
 
-RAIL = 0.155
-"""Distance from the nose line to the outer edge of the table [m]: cushion and wood."""
-CUSHION = 0.050
-"""Distance from the nose line to the wood [m]."""
-
-BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
-"""The two ends of snooker's baulk line: float64 (2, 2) [m], read-only."""
+RAIL, CUSHION = 0.155, 0.050  # from the nose line to the table's outer edge, and to the wood [m]
+BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])  # its ends [m]
 _TURN = np.linspace(np.pi, 2 * np.pi, 65)
-D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
-"""Points on the arc of snooker's D: float64 (65, 2) [m], read-only."""
-SPOT_MARKS = COLOUR_SPOTS
-"""Snooker's spots: float64 (6, 2) [m], read-only; ``snooker_env.geometry.COLOUR_SPOTS``."""
-
+D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)  # (65, 2) [m]
 _SNOOKER = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
 
 for _constant in (BAULK_LINE, D_ARC):
@@ -34,12 +25,14 @@ for _constant in (BAULK_LINE, D_ARC):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The fixed parts of a table, see ``outline``."""
+    """The fixed parts of a table [m], all empty for unbounded cloth."""
 
-    cushions: tuple[Floats, ...]
-    noses: tuple[Floats, ...]
-    falls: Floats
-    throats: Floats
+    cushions: tuple[
+        Floats, ...
+    ]  # (m, 2): closed polygons of nose, jaws and the cushion's back under the wood
+    noses: tuple[Floats, ...]  # (m, 2): the line that balls meet at each cushion, jaw - nose - jaw
+    falls: Floats  # (k, 3): centre and radius of the slate's holes
+    throats: Floats  # (k, 5): the holes in the wood: the mouth's middle, the fall's centre, half the width
 
 
 def extent(table: Table) -> Floats:
@@ -54,30 +47,7 @@ def has_lines(table: Table) -> bool:
 
 @lru_cache(maxsize=16)
 def outline(table: Table) -> Outline:
-    """The fixed parts of a table, from its noses, jaws and falls.
-
-    Parameters
-    ----------
-    table : Table
-        The table.
-
-    Returns
-    -------
-    Outline
-        Four attributes [m], all empty for unbounded cloth. ``cushions``, arrays (m, 2): closed polygons of the nose,
-        the jaws at its ends and the cushion's back under the wood. ``noses``, arrays (m, 2): the line that balls
-        meet at each cushion, jaw - nose - jaw. ``falls`` (k, 3): centre and radius of the slate's holes. ``throats``
-        (k, 5), the holes in the wood: the mouth's middle, the fall's centre, half the width. The result is cached:
-        do not change its arrays.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.render import outline
-    >>> parts = outline(sn.Table.preset("match"))
-    >>> len(parts.cushions), parts.falls.shape, parts.throats.shape
-    (6, (6, 3), (6, 5))
-    """
+    """The fixed parts of a table, from its noses, jaws and falls. They are cached: do not change them."""
     cushions, noses, ends = [], [], []
     for axis, side, level, *low_high in table.noses:
         ends += [(_point(axis, side * level, end), _point(axis, side, 0.0)) for end in low_high]
@@ -152,11 +122,12 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     Returns
     -------
     dict
-        Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in
-        ``outline``, as lists. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed.
-        ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
-        table without them. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id
-        {"name", "letter", "value", "rgb"}.
+        Lengths in metres, rounded to 1e-6. ``cushions``: closed polygons of the nose, the jaws at its ends and the
+        cushion's back under the wood. ``noses``: the lines that balls meet, jaw - nose - jaw. ``falls``: centre and
+        radius of the slate's holes. ``throats``, the holes in the wood: the mouth's middle, the fall's centre, half the
+        width. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed. ``rail``, ``cushion``: from the
+        nose line to the outer edge, and to the wood. ``lines``: {"baulk", "d", "spots"}, or None on a table without
+        them. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id {"name", "letter", "value", "rgb"}.
 
     Examples
     --------
@@ -167,7 +138,7 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     """
     table = Table.of(table)
     parts = outline(table)
-    marks = {"baulk": _round(BAULK_LINE), "d": _round(D_ARC), "spots": _round(SPOT_MARKS)}
+    marks = {"baulk": _round(BAULK_LINE), "d": _round(D_ARC), "spots": _round(COLOUR_SPOTS)}
     keys = ("name", "letter", "value", "rgb")
     balls = zip(NAMES, LETTERS, VALUES.tolist(), COLOURS.tolist(), strict=True)
     return {

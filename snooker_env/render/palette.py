@@ -22,7 +22,6 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "lamp": (255, 252, 240),
     "bar": (16, 20, 31),
     "bar_edge": (62, 70, 94),
-    "bar_accent": (196, 32, 48),
     "text": (240, 240, 236),
     "text_quiet": (164, 170, 184),
     "first": (44, 104, 180),

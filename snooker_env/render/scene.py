@@ -26,22 +26,13 @@ TURN_STEP = 1 / 240  # time between stored rotations [s]: at 100 rad/s a quarter
 UNTURNED = np.eye(3)
 
 
-class Turning:
-    """The rotation of the cue ball of a ``Shot``."""
-
-    def __init__(self, shot: Shot):
-        self._shot = shot
-        count = int(shot.duration / TURN_STEP) + 1
-        spins = shot.at((np.arange(count) + 0.5) * TURN_STEP)[2][:, CUE]
-        self._kept = [UNTURNED]
-        for turn in spins * TURN_STEP:
-            self._kept.append(rotate(turn) @ self._kept[-1])
-
-    def at(self, t: float) -> Floats:
-        """The rotation since the start of the shot, a matrix (3, 3), at a time [s]."""
-        k = min(int(t / TURN_STEP), len(self._kept) - 1)
-        rest = t - k * TURN_STEP
-        return rotate(self._shot.at(k * TURN_STEP + rest / 2)[2][CUE] * rest) @ self._kept[k]
+def turns_of(shot: Shot) -> list[Floats]:
+    """The rotation of the cue ball since the start of a shot, a matrix (3, 3), every ``TURN_STEP``."""
+    spins = shot.at((np.arange(int(shot.duration / TURN_STEP) + 1) + 0.5) * TURN_STEP)[2][:, CUE]
+    turns = [UNTURNED]
+    for turn in spins * TURN_STEP:
+        turns.append(rotate(turn) @ turns[-1])
+    return turns
 
 
 def rotate(turn: Floats) -> Floats:
@@ -55,14 +46,12 @@ def rotate(turn: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class ScoreBar:
-    """The content of a score bar under the table, as on television. None, "" and () leave a part out."""
+    """The content of a score bar under the table. None, "" and () leave a part out."""
 
     players: tuple[str, ...] = ()
     scores: tuple[int, ...] = ()
     striker: int | None = None  # an index of players
     break_points: int | None = None  # of the visit so far
-    potted: tuple[int, ...] = ()  # ids of the balls of this visit, in order
-    reds_left: int | None = None
     points_on: int | None = None  # that can still be scored
     ball_on: str = ""  # "red", "any colour", "free ball", ...
     words: str = ""  # what just happened, as the referee would say it
@@ -164,7 +153,7 @@ class Film:
         drops = shot.events[np.isin(shot.events["kind"], (EventKind.POT, EventKind.OFF))]
         potted = shot.events["i"][shot.events["kind"] == EventKind.POT]
         self._paths = trace_paths(shot, dict.fromkeys((CUE, *potted.tolist())))
-        self._turning, self._met = Turning(shot), find_contacts(shot)
+        self._turns, self._met = turns_of(shot), find_contacts(shot)
         self._gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
         self._gone_at[drops["i"]] = drops["time"]
 
@@ -181,13 +170,8 @@ class Film:
             if len(done) > 1:
                 paths[ball] = done
         places, times = self._met
-        over = {
-            "ghosts": places[times <= t],
-            "turn": self._turning.at(t),
-            "bar": self._bar,
-            "text": self._text,
-        }
-        made = scene(self._table, r, self._gone_at > t, paths=paths, **over)
+        over = {"ghosts": places[times <= t], "turn": self._turns[round(t / TURN_STEP)]}
+        made = scene(self._table, r, self._gone_at > t, paths=paths, bar=self._bar, text=self._text, **over)
         return replace(made, ball_radius=self._shot.physics.R, cue=cue)
 
     def _cue(self, t):

@@ -9,8 +9,9 @@ import numpy as np
 
 from .._lib.check import integer, refuse
 from .._lib.types import Bytes, Floats
+from ..geometry import COLOUR_SPOTS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, extent, has_lines, outline
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, Outline, extent, has_lines, outline
 from .palette import PALETTE
 
 Size: TypeAlias = tuple[int, int]
@@ -160,7 +161,7 @@ def _marks(canvas):
     for points in (BAULK_LINE, D_ARC):
         image, x, y = canvas.around(points, 2 * half)
         _paint(image, _INK["line"], 0.88 * canvas.cover(to_line(x, y, points, 3 * half) - half))
-    for spot in SPOT_MARKS:
+    for spot in COLOUR_SPOTS:
         image, x, y = canvas.around([spot], 0.02)
         far = np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)
         _paint(image, _INK["line"], 0.9 * canvas.cover(far))

@@ -90,23 +90,15 @@ def bars(
 ) -> list[tuple[ScoreBar, ScoreBar]]:
     """The bars during and after each of n strokes of one episode; ``chances``: ``Replay.win_chance``, n + 1."""
     made, names = [], tuple(players)
-    potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
-    run = 0
     for one in strokes:
         gains = {one.player: one.points, 1 - one.player: one.penalty}
         scores = tuple(score - gains.get(k, 0) for k, score in enumerate(one.scores))
-        if one.break_before != run or not run:
-            potted = [] if not one.break_before else None
         here = one.shot.on_table.copy()
         here[pots_of(one.shot)] = True
         on = here, one.ball_on, one.free_ball
-        before = _bar(on, names, scores, one.player, one.break_before, potted)
-        if one.points and potted is not None:
-            potted = potted + pots_of(one.shot)
-        run, on = one.break_before + one.points, (one.on_table, one.next_on, one.next_free_ball)
-        after = _bar(on, names, one.scores, one.player, run, potted, sentence(one, names))
-        made.append((before, after))
-        run = run if one.points else 0
+        before = _bar(on, names, scores, one.player, one.break_before)
+        on, run = (one.on_table, one.next_on, one.next_free_ball), one.break_before + one.points
+        made.append((before, _bar(on, names, one.scores, one.player, run, sentence(one, names))))
     if chances is None:
         return made
     kept = zip(made, chances[:-1], chances[1:], strict=True)
@@ -118,13 +110,12 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
     now, last = tables.standing(k), last or ScoreBar()
     on = tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"]
     of_player = players, now["scores"], now["next_player"], now["break_points"]
-    return _bar(on, *of_player, last.potted if now["break_points"] else (), last.words)
+    return _bar(on, *of_player, last.words)
 
 
-def _bar(on, players, scores, striker, break_points, potted, words=""):
+def _bar(on, players, scores, striker, break_points, words=""):
     """A bar; without players none of their scores. ``on``: the balls on the table, the ball on, and whether it is free."""
     on_table, ball_on, free_ball = on
     who = (tuple(players), scores, striker) if players else ((), (), None)
     left = points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0
-    named, reds = "free ball" if free_ball else on_words(ball_on), int(on_table[1 : N_REDS + 1].sum())
-    return ScoreBar(*who, break_points, tuple(potted or ()), reds, left, named, words)
+    return ScoreBar(*who, break_points, left, "free ball" if free_ball else on_words(ball_on), words)

@@ -22,11 +22,8 @@ train --steps -1 | --steps is -1
 train --eval-visits 1 | --eval-visits is 1
 train --eval-visits 2049 | --eval-visits is 2049
 train --seed 4294967296 | --seed is 4294967296, must be an integer in [0, 4294967295]
-train --start nowhere | start = 'nowhere'
-train --start pyproject.toml | pyproject.toml
-train --start x --imitate 5 | imitate = 5: must be 0 or left out with --start
 train --imitate 100 | imitate = 100: must be 0 for strokes
-train --agent ppo_value --imitate 0 | imitate = 0: must be 1 or more for ppo_value without --start
+train --agent ppo_value --imitate 0 | imitate = 0: must be 1 or more for ppo_value: PPO needs
 train --agent ppo_target --observe-conditions | observe_conditions = True: must be False with conditions="fixed"
 train --agent ppo_value --imitate 8 --conditions drawn --observe-conditions | observe_conditions = True: must be left out for ppo_value
 train --set gamma | gamma

@@ -7,7 +7,7 @@ import pytest
 
 import train
 from agents import learn_worth
-from agents.learning import expert_iteration, learn_strokes, loop, stroke_frames
+from agents.learning import expert_iteration, learn_strokes, loop
 from agents.learning.frame_self_play import FRAME
 from snooker_env.players import FRAMES
 from tests.agents.training import TINY, results, weights
@@ -56,7 +56,7 @@ def small(monkeypatch):
     short = {"max_strokes": 24, "layout": "colours"}
     for name, value in short.items():
         monkeypatch.setitem(FRAME, name, value)
-    monkeypatch.setattr(stroke_frames, "FRAMES", FRAMES | short)
+    monkeypatch.setattr(learn_strokes, "FRAMES", FRAMES | short)
     monkeypatch.setattr(learn_worth, "PASSES", 2)
     monkeypatch.setattr(learn_strokes, "PASSES", 2)
     monkeypatch.setattr(learn_strokes, "LAST_PASSES", {"visits": 3, "frames": 3})

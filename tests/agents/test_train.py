@@ -21,7 +21,7 @@ from agents.learning.agent_training import recipe_of
 from agents.learning.loop import Loop
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.benchmark.tasks import tables_of
 from tests.agents.training import TINY, results, resume, run, weights
 from tests.processes import ROOT, replace
@@ -43,7 +43,7 @@ def test_run_leaves_model_figures_and_curves(finished):
     assert {p.name for p in out.iterdir()} == FILES
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
-    names = "command settings steps simulated_shots seconds parts start learned evaluation curve imitation"
+    names = "command settings steps simulated_shots seconds parts learned evaluation curve imitation"
     assert sorted(found) == sorted(f"{names} commit seed machine load software".split())
     assert found["settings"]["agent"] == "ppo_target" and found["steps"] == 512 == found["simulated_shots"]
     (part,) = found["parts"]
@@ -170,18 +170,6 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
         seen = [{name: value for name, value in one.items() if name != "each"} for one in played]
         assert seen == [{"first_seed": tables_of("held_out", 2)} | wanted] * 4
         del played[:]
-
-
-def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, refused):
-    start = str(finished)
-    assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
-    assert np.array_equal(weights(tmp_path / "run"), weights(finished))
-    found = results(tmp_path / "run")
-    begun = {"model": start, "shots": 512, "imitated": 0, "start": None, "simulated_shots": 512}
-    assert found["start"] == begun and found["simulated_shots"] == 1024
-    assert f"ppo_target, with 512 shots of training on top of the 512 of {start}, " in found["learned"]
-    error = refused(train.main, *TINY, "--out", tmp_path / "other", "--agent", "ppo_value", "--start", start)
-    assert "must be a model of ppo_value" in error
 
 
 class AnyAction:

@@ -5,19 +5,18 @@ import pytest
 import torch
 
 import snooker_env as sn
-import train
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import Recipe
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.physics import conditions
 from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.pot_view import SHOWN
-from tests.agents.training import results, run, weights
+from tests.agents.training import results, run
 
 DRAWN = {"action": "discrete", "noise": "professional", "layout": "opened", "conditions": "drawn"}
 OBSERVED = ["--conditions", "drawn", "--observe-conditions"]
@@ -112,12 +111,3 @@ def test_it_sees_those_of_the_table_that_it_plays_on(observed, monkeypatch):
         del seen[:]
         player.at(options).play(at, np.arange(3))
         assert np.allclose(np.stack(seen)[:, SHOWN:], conditions.scale_to_unit(wanted), atol=1e-6)
-
-
-def test_weights_of_an_agent_that_observes_something_else_are_refused(observed, tmp_path, refused):
-    start = ["--agent", "ppo_target", "--start", observed, "--out", tmp_path / "run"]
-    error = refused(train.main, *start, "--conditions", "drawn")
-    assert "start = " in error and "must be a model with the same observation as this one" in error
-    assert not (tmp_path / "run").exists()
-    assert run(tmp_path / "run", *map(str, start[:4]), *OBSERVED, "--set", "learning_rate=0.0") == 0
-    assert np.array_equal(weights(tmp_path / "run"), weights(observed))

@@ -1,13 +1,13 @@
 """Does ``train.py`` train by expert iteration, judge what it learned honestly, and resume at any moment?"""
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
 from agents.learning import loop
-from snooker_env.benchmark import count_shots, play_visits, summary
+from snooker_env.benchmark import count_shots
+from snooker_env.benchmark.rollouts import play_visits, summary
 from tests.agents import training
-from tests.agents.training import results, weights
+from tests.agents.training import results
 
 EXPERT = ["--agent", "ppo_value", "--envs", "4", "--imitate", "64"]
 
@@ -50,9 +50,3 @@ def test_the_run_says_what_the_planner_gains(finished):
     for name in (f"planner@{finished}", "search"):
         again = summary(play_visits(sn.player(name), 4, cue="real"))
         assert again == found["evaluation"][name.partition("@")[0]]
-
-
-def test_a_run_that_starts_from_a_model_has_its_value(finished, tmp_path):
-    assert run(tmp_path, "--imitate", "0", "--start", str(finished), "--set", "learning_rate=0.0") == 0
-    assert results(tmp_path)["simulated_shots"] == results(finished)["simulated_shots"] + 512
-    assert np.array_equal(weights(tmp_path), weights(finished))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, write_result
+from snooker_env.benchmark import TASKS, Agent, faults, judge
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.playing import BATCH
-from snooker_env.benchmark.results import strokes_of
+from snooker_env.benchmark.results import read_result, strokes_of, write_result
 from snooker_env.players import VISITS, Strokes, ask_player
 from tests.processes import ROOT
 

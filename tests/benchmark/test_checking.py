@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import TASKS, Agent, faults, judge
-from snooker_env.benchmark.leaderboard import page
+from snooker_env.benchmark.leaderboard import BEGIN, END, page
 from snooker_env.benchmark.results import figures_of, pack_strokes, strokes_of
 from snooker_env.benchmark.schema import DATE
 from tests.benchmark.records import put
@@ -103,4 +103,4 @@ def test_what_is_not_known_is_not_official():
 def test_no_free_text_of_a_file_is_on_the_page():
     evil = "evil [a](b)"
     free = dict.fromkeys(("command", "commit", "machine__cpu", "software__snooker_env"), evil)
-    assert "evil" not in page([changed(**free)])
+    assert "evil" not in page(f"{BEGIN}\n{END}", [changed(**free)])

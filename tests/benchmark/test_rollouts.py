@@ -88,7 +88,7 @@ def test_a_player_plays_alike_however_actions_are_read_and_whatever_is_seen():
 
 def test_no_table_comes_twice_or_mirrored():
     seeds = tables_of("held_out", 100)
-    assert seeds == sorted(set(seeds)) and seeds[0] == HELD_OUT_SEED
+    assert seeds == tuple(sorted(set(seeds))) and seeds[0] == HELD_OUT_SEED
     tables = SnookerVectorEnv(100, layout="held_out")
     tables.reset(seed=seeds)
     reds = np.sort(np.abs(tables.tables.positions[:, 1:16, 0]), axis=1)

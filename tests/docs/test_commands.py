@@ -17,11 +17,9 @@ SHORT = {
     "benchmarks.pockets": "--out {tmp}",
     "benchmarks.stability": "--fuzz 2000 --out {tmp}",
     "benchmarks.speed": "--shots 20 --repeats 1 --parts impacts shots --out {tmp}",
-    "benchmarks.fit_cushion": "--steps 200",
     "benchmarks.make_tables": "safety --tables 2 --out {tmp}",
     "benchmarks.execution": "--strokes 40 --visits 4 --levels professional robot",
     "benchmarks.coach": "--players 2 --strokes 10 --pool 10 --levels club",
-    "benchmarks.levels": "--frames 2 --budget 30",
     "benchmarks.page": "--frames 2",
     "benchmarks.fuzz": "--shots 300 --threads 1",
     "snooker_env.watch": "--agent ghost_ball --out {tmp}/visit.html",
@@ -36,7 +34,6 @@ SLOW = {"results/make_pictures.py", "tests/advice/coach.py"} | {
     f"benchmarks.{name}"
     for name in [
         "coach",
-        "fit_cushion",
         "make_tables",
         "pockets",
         "scene",

@@ -67,8 +67,8 @@ def test_domenech_s_throw_gives_a_tenth():
 
 
 def test_the_cushion_of_match_is_within_what_the_rebounds_give():
-    """Alone they give a steeper fall than with how far hard throws run (``benchmarks.fit_cushion``), about
-    which "match" was fitted too. Free, e_c is at the end of its range, and has no interval."""
+    """Alone they give a steeper fall than with how far hard throws run, to which "match" was fitted too. Free, e_c is at the
+    end of its range, and has no interval."""
     columns = fitting.read(DATA / "cushion_rebound.csv", "cushion")
     fitted, match = fitting.fit("cushion", columns, fixed={"e_c": 0.98}), sn.Physics.preset("match")
     assert fitted.values == pytest.approx({"e_c_knee": 2.174, "e_c_power": 0.3084}, rel=0.002)

@@ -7,7 +7,7 @@ import torch
 
 from agents.players.trained import load_player
 from examples import ppo_single_file as example
-from snooker_env.benchmark import play_visits, summary
+from snooker_env.benchmark.rollouts import play_visits, summary
 
 
 def test_advantages_are_those_of_the_definition():

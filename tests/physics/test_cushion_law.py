@@ -1,5 +1,4 @@
-"""Does a faster ball always come off a cushion faster? The law e(v) and the whole impact, and the fit behind
-``"match"``."""
+"""Does a faster ball always come off a cushion faster? The law e(v) and the whole impact."""
 
 import numpy as np
 import pytest
@@ -7,9 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import snooker_env as sn
-from benchmarks.fit_cushion import __main__ as fit_cushion
-from benchmarks.fit_cushion import line
-from benchmarks.fit_cushion.lengths import START, lengths
 from snooker_env.physics.impact import contact
 from tests.kernels import from_python
 from tests.physics.cases import R
@@ -94,34 +90,3 @@ def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_al
         one, two = (rebound(physics, 1.0, SLANTED if k % 4 else STRAIGHT, k % 3 > 0) for physics in both)
         largest = max(largest, np.log(two / one) / np.log(step))
     assert 1.05 < largest < 1.0 / MOST_POWER
-
-
-# the preset
-# ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def misfit():
-    return fit_cushion.Misfit()
-
-
-def test_match_is_the_fit_to_the_measurements(misfit):
-    match = sn.Physics.preset("match")
-    best, free = (fit_cushion.fit_constants(misfit, fit_cushion.NAMES[:n]) for n in (4, 5))
-    knee, power, mu_r, thrown, _ = best
-    assert (match.e_c_knee, match.e_c_power, match.mu_r) == pytest.approx((knee, power, mu_r), rel=0.005)
-    assert (match.e_c, match.roll_drag) == (fit_cushion.E_C, 0.0)
-    # no growth of the rolling resistance makes the fit better
-    assert np.sum(misfit(free) ** 2) > np.sum(misfit(best) ** 2) - 0.1
-    before = (*fit_cushion.BEFORE.values(), thrown, 0.0)
-    assert np.sum(misfit(before) ** 2) > np.sum(misfit(best) ** 2) + 3.0
-
-
-@pytest.mark.parametrize("drag", [0.0, 0.015])
-@pytest.mark.parametrize("speed", [1.0, 3.0, 6.0, 10.0, 13.0])
-def test_the_fit_s_ball_runs_as_far_as_the_engine_s(misfit, speed, drag):
-    physics = sn.Physics.preset("match", roll_drag=drag)
-    constants = (physics.e_c, physics.e_c_knee, physics.e_c_power, physics.mu_r, drag)
-    for rolling in (False, True):
-        way = line.travels(speed, speed * rolling, START - R, 3.569 - 2 * R, constants, misfit.table)
-        assert way / 3.569 == pytest.approx(lengths(speed, physics, rolling), abs=0.004)

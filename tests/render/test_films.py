@@ -7,7 +7,7 @@ import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.pygame_view import View, rgb_array
-from snooker_env.render.scene import LEAD, Film, Turning, find_contacts, scene
+from snooker_env.render.scene import LEAD, TURN_STEP, Film, find_contacts, scene, turns_of
 
 
 @pytest.fixture(scope="module")
@@ -80,4 +80,4 @@ def test_a_ball_that_rolls_and_spins_turns_about_both():
     for w in spins:
         middle = point + np.cross(w, point) / 2
         point = point + np.cross(w, middle)
-    assert Turning(shot).at(end) @ (0.0, 0.0, 1.0) == pytest.approx(point, abs=2e-4)
+    assert turns_of(shot)[round(end / TURN_STEP)] @ (0.0, 0.0, 1.0) == pytest.approx(point, abs=2e-4)

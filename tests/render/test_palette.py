@@ -8,7 +8,8 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import NAMES, SPOTS, VALUES
 from snooker_env.geometry import BAULK_Y, D_RADIUS
-from snooker_env.render import COLOURS, PALETTE, outline, scene_data
+from snooker_env.render.outline import outline, scene_data
+from snooker_env.render.palette import COLOURS, PALETTE
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom"])

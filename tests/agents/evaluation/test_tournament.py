@@ -9,7 +9,7 @@ from agents import report, tournament
 from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, PLAYER, faults
-from snooker_env.benchmark import read_result
+from snooker_env.benchmark.results import read_result
 from tests.agents.training import interrupted_at
 from tests.benchmark.records import at, inner, leaves, others, put, resized
 from tests.processes import ROOT

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 import torch
 
-import train
 from agents import evaluate
 from agents.evaluation.entrants import Entrant
 from agents.features.observed import training_tables
@@ -69,7 +68,7 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     (tmp_path / "plain.zip").write_bytes(pack_model(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
     wanted = {"recipe": name, "num_timesteps": 77, "gamma": model.gamma}
-    wanted |= {"seed": 3, "imitated": 300, "start": None}
+    wanted |= {"seed": 3, "imitated": 300}
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
         assert {key: getattr(one, key) for key in wanted} == wanted
         assert one.env_options == model.env_options and one.action_space == model.action_space
@@ -85,8 +84,8 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
 
 
 @pytest.mark.parametrize("weights", [False, True])
-def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
-    """Evaluation and --start, of our and another's model, with and without a sound policy.pth."""
+def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights):
+    """Evaluation of our and another's model, with and without a sound policy.pth."""
     (tmp_path / "run").mkdir()
     ours, foreign, mark = tmp_path / "run" / "model.zip", tmp_path / "foreign.zip", tmp_path / "mark"
     bombed(mask, ours, mark, weights)
@@ -96,14 +95,11 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
             wrong = weights or file == foreign
             with pytest.raises(ValueError, match=r"^agent = '.*': must be") if wrong else nullcontext():
                 call(file)
-    for arguments in ([foreign], [ours, "--agent", "ppo_target"]):
-        new = ["--out", tmp_path / "new", "--envs", "2"]
-        assert "start = " in refused(train.main, "--start", *arguments, *new)
     assert not mark.exists()
 
 
 WRONG = ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))
-OTHERS = {key: WRONG for key in KEPT} | {"start": tuple(one for one in WRONG if not isinstance(one, dict))}
+OTHERS = {key: WRONG for key in KEPT}
 OTHERS |= {key: (*WRONG, None) for key in ("num_timesteps", "gamma")}
 OTHERS["recipe"] += (None, "../../etc/passwd", "x" * 10**6)
 OPTIONS = {"opponent": "x.zip", "aim": ["target"], "action": "box", "physics": {"R": 1}, "layout": 3}
@@ -114,7 +110,7 @@ OTHERS |= {"gamma": (*OTHERS["gamma"], 2), "num_timesteps": (*OTHERS["num_timest
 @pytest.mark.parametrize("key", OTHERS)
 def test_a_figure_that_is_changed_to_another_kind_or_missing_is_refused_by_its_name(plain, tmp_path, key):
     changes = [lambda found, value=value: found.update({key: value}) for value in OTHERS[key]]
-    if key not in ("seed", "imitated", "start", "recipe", "seen"):
+    if key not in ("seed", "imitated", "recipe", "seen"):
         changes.append(lambda found: found.pop(key))
     for change in changes:
         file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(change))
@@ -238,19 +234,14 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
 
 
 def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, refused):
-    """A planner wants a value, a training the whole network: by the file and by its folder."""
+    """A planner wants a value: by the file and by its folder."""
     file = tmp_path / POLICY
     write_policy(file, WEIGHTS, **ABOUT)
-    whole = (
-        "must be a model that train.py saved, its .zip or a run's folder: an .npz holds only plain weights"
-    )
     both = "must name a model with policy and value: none, professional, amateur, club or its file"
     for path in (file, tmp_path):
         name = f"planner@{path}"
         error = refused(evaluate.main, *QUICK, "--agent", name)
         assert error.endswith(f"error: player = {name!r}: {both}")
-        error = refused(train.main, "--start", path, "--out", tmp_path / "run")
-        assert error.endswith(f"error: start = {str(file)!r}: {whole}")
 
 
 def about(**changes):

@@ -1,1 +1,0 @@
-"""How is the cushion's restitution fitted to measurements? ``python -m benchmarks.fit_cushion``."""
