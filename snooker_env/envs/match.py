@@ -12,7 +12,6 @@ from pettingzoo import AECEnv
 
 from .._lib.check import choice
 from .._lib.types import Action, Observation, RenderMode
-from ..game.frame import Frame
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
 from ..tasks import observations
@@ -22,7 +21,7 @@ from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Crew
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
-from .pictures import FPS, MODES, SIZE, Pictures
+from .pictures import MODES, SIZE, Pictures
 from .seats import match_options, match_tables
 
 PLAYERS: tuple[str, ...] = ("player_0", "player_1")
@@ -54,7 +53,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     3
     """
 
-    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": 1}  # noqa: RUF012
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
     tables: Frames
 
@@ -74,7 +73,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []
-        acts = list(zip(PLAYERS, (seat.actions for seat in self.tables.seats), strict=True))
+        acts = list(zip(PLAYERS, self.tables.actions, strict=True))
         self.observation_spaces = {name: observation_space_of(self.options, its) for name, its in acts}
         self.action_spaces = {name: copy.deepcopy(its.space) for name, its in acts}  # each with its generator
         self.np_random, _ = seeding.np_random()
@@ -94,11 +93,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     @agent_selection.setter
     def agent_selection(self, agent: str) -> None:
         self._selected = agent
-
-    @property
-    def frame(self) -> Frame:
-        """The current ``snooker_env.game.frame.Frame``."""
-        return self.tables.frame(0)
 
     @property
     def last_shot(self) -> Shot | None:
@@ -129,7 +123,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
-        require_choices(self.tables.seats[side].actions)
+        require_choices(self.tables.actions[side])
         return self._mask(side, agent == self.agent_selection)
 
     def _mask(self, side, turn):
@@ -162,7 +156,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def _account(self, striker=None):
         """Whose turn it is, and the infos; ``striker``: who has just had one."""
-        frame = self.frame
+        frame = self.tables.frame(0)
         over = frame.phase == "over"
         self.terminations = dict.fromkeys(PLAYERS, over)
         self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.are_stopped_short()[0]) and not over)
@@ -182,9 +176,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
             self._was_dead_step(action)
             return
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
-        a = self.tables.seats[striker].actions.check(action)
+        a = self.tables.actions[striker].check(action)
         self._pictures.require_display()
-        self._record.begin_step()
         crew = Crew(self._record.buffers, self._watch)
         played = bool(self.tables.turns([np.array([a])] * 2, out, crew)[0])
         self._last = out if played else None
@@ -198,6 +191,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         """The keys of ``SnookerEnv``'s info: of the last stroke, and of the frame as the player sees it."""
         info = self.tables.info_of(player, self._last)
         info["opponent_strokes"] = int(self._last is not None and striker is not None and striker != player)
-        if isinstance(self.tables.seats[player].actions, Choices):
+        if isinstance(self.tables.actions[player], Choices):
             info["action_mask"] = self.action_mask(PLAYERS[player])
         return info

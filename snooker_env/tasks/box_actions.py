@@ -39,18 +39,13 @@ def tip_on_disc(side, top, max_offset):
 
 
 @kernel
-def place_of(a, options):
-    """The place in the D (x, y) [m] that the two placement components of an action mean."""
+def place_of(a, options, anywhere):
+    """The place (x, y) [m] in the D or, ``anywhere``, on the bed, that the two placement components of an action mean."""
     at = 5 if options[A_ELEVATION] else 4
     x, back = a[at], 0.5 * (a[at + 1] + 1.0)
+    if anywhere:
+        return HALF_WIDTH * x, HALF_LENGTH * a[at + 1]
     return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
-
-
-@kernel
-def place_anywhere_of(a, options):
-    """The place (x, y) [m] that they mean on the whole bed: shares of half its width and length."""
-    at = 5 if options[A_ELEVATION] else 4
-    return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
 @kernel(uses=(aim_along,))
@@ -60,7 +55,7 @@ def _target_line(positions, on_table, on, stroke, law, work):
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
         dx, dy = lines[0, GHOST_X] - positions[0, 0], lines[0, GHOST_Y] - positions[0, 1]
         return swerved_aim(atan2(dy, dx), hypot(dx, dy), stroke, positions, on_table, law, work)
-    find_lines(positions, on_table, on, lines)
+    find_lines(positions, on_table, on, lines, False)
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
@@ -100,6 +95,7 @@ class Actions:
     steepest: float  # the elevation that 1 means [rad]
     placement: bool
     says: tuple[str, ...]  # some of ``SAYS``, in their order
+    declares: bool  # whether the last component is a declaration
     space: spaces.Box
     size: int  # components of an action
 
@@ -117,14 +113,10 @@ class Actions:
                 raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
         self.elevation = self.steepest > 0.0
         self.says = tuple(name for name in SAYS if name in says)
+        self.declares = any(name in self.says for name in DECLARES)
         said = ("nominate" in says) + ("decision" in says) + self.declares
         self.size = 4 + self.elevation + 2 * self.placement + said
         self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
-
-    @property
-    def declares(self) -> bool:
-        """Whether the last component is a declaration."""
-        return any(name in self.says for name in DECLARES)
 
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._lib.check import refuse, refuse_what
 from .._lib.jit import entry, kernel
 from .._lib.types import Action, Floats
-from ..game.balls import N_BALLS, bits
+from ..game.balls import N_BALLS, YELLOW, bits
 from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS
 from ..geometry import BALL_RADIUS
@@ -132,8 +132,9 @@ def masks(which, positions, on_table, game, options, cue, out):
         for n in range(parts):
             on, available = strikeable(row, mask), True
             if parts > 1:
-                on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
-                available = declarations.may_nominate(n, row)
+                ball = declarations.nominated_ball(n, row)
+                on = declarations.playable(row, mask, ball)
+                available = n == 0 if ball <= 0 else ball == YELLOW + n - 1
             p, here, many, pots = positions[k], on_table[k], 1, False
             chooses = available and here[0]
             crowded = chooses and _lacks_room(p, here, cue[C_RAILS:], 0.0, 0.0)
@@ -167,19 +168,15 @@ class Choices:
     size: int = 1
     placement: bool = False
     says: tuple[str, ...]
+    declares: bool  # whether the last choices are declarations
     choices: int
     space: "spaces.Discrete[np.int64]"  # evaluated, it would need Gymnasium 1.2.2
 
     def __init__(self, says: Collection[str] = ()):
         self.says = tuple(name for name in declarations.SAYS if name in says)
-        parts = 1 + declarations.COLOURS * ("nominate" in says)
-        self.choices = SIZE * parts + sum(name in says for name in declarations.DECLARES)
-        self.space = spaces.Discrete(self.choices)
-
-    @property
-    def declares(self) -> bool:
-        """Whether the last choices are declarations."""
-        return any(name in self.says for name in declarations.DECLARES)
+        declares = sum(name in says for name in declarations.DECLARES)
+        self.choices = SIZE * (1 + declarations.COLOURS * ("nominate" in says)) + declares
+        self.declares, self.space = declares > 0, spaces.Discrete(self.choices)
 
     def check(self, action: Action) -> list[float]:
         """The choice in a list; ValueError unless it is an integer in [0, choices)."""

@@ -104,9 +104,9 @@ def _passes(played, positions, b, p, law, work):
 
 
 @kernel
-def _direction_at(played, far, positions, law, work):
-    """Direction [rad], from where it lies, in which the cue ball of a stroke of ``stroke_in_room`` is as ``far`` away
-    [m], or where it stops."""
+def _off(played, line, far, positions, law, work):
+    """Angle [rad] from ``line`` to where a stroke of ``stroke_in_room`` takes the cue ball when it is as ``far`` away [m], or
+    stops, in (-pi, pi]."""
     phys, motion, state = law.phys, work.motion, work.state
     cx, cy = positions[0, 0], positions[0, 1]
     (vx, vy, _), w = struck_by(played, law)
@@ -128,13 +128,7 @@ def _direction_at(played, far, positions, law, work):
         if hypot(x - cx, y - cy) > far - _THERE:
             break
         cloth.next_phase(motion, state, 0, phys)
-    return atan2(y - cy, x - cx)
-
-
-@kernel
-def _off(played, line, far, positions, law, work):
-    """Angle [rad] from ``line`` to where the stroke ``played`` sends the cue ball, in (-pi, pi]."""
-    off = _direction_at(played, far, positions, law, work) - line
+    off = atan2(y - cy, x - cx) - line
     return off - 2.0 * pi * round(off / (2.0 * pi))
 
 

@@ -17,18 +17,9 @@ from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
+from . import observations
 from .kernel_arrays import C_RAILS, OutputArrays, PlayedArrays
 from .lines import POTS
-from .observations import (
-    POTS_SIZE,
-    SHOWN_SPEED,
-    SIZE,
-    STATE_ENTRIES,
-    STROKE_SIZE,
-    View,
-    observe_into,
-    observe_pots_into,
-)
 from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
@@ -45,16 +36,16 @@ def _observe(out, positions, on_table, state, view, pots):
     on = balls_on_kernel(state[BALL_ON], bits(on_table))
     seen = positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS]
     if view.pots:
-        observe_pots_into(out, *seen, view, pots)
+        observations.observe_pots_into(out, *seen, view, pots)
     else:
-        observe_into(out, *seen)
+        observations.observe_into(out, *seen)
 
 
 @entry(what="the referee of visits", seconds=4)
 def _conclude(which, positions, on_table, game, shots, rules, view, output):
     """Judge the shots that came to rest, write all results. ``rules``: reward, limit of steps, one stroke."""
     shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
@@ -81,7 +72,7 @@ def _conclude(which, positions, on_table, game, shots, rules, view, output):
 def _begin(which, fresh, in_hand, tables, view, output, last):
     """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         mask, state = bits(on_table[k]), game[k]
@@ -97,7 +88,7 @@ def _begin(which, fresh, in_hand, tables, view, output, last):
 @entry
 def observe(which, positions, on_table, game, view, out):
     """The observations of the tables ``which``: one row of ``out`` each."""
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         _observe(out[j], positions[k], on_table[k], game[k], view, pots)
@@ -109,11 +100,16 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
-        menu = STROKE_SIZE * menu_size(rules.speeds, False) + len(STATE_ENTRIES)
-        self.SIZE = {"pots": POTS_SIZE, "strokes": menu}.get(rules.observation, SIZE)
+        menu = observations.STROKE_SIZE * menu_size(rules.speeds, False) + len(observations.STATE_ENTRIES)
+        self.SIZE = {"pots": observations.POTS_SIZE, "strokes": menu}.get(
+            rules.observation, observations.SIZE
+        )
         super().__init__(rules, n, limit=limit)
-        spread, rails = rules.noise.spread(rules.physics, speed=SHOWN_SPEED), rules.cue_row[C_RAILS:]
-        self._view: View = View(rules.observation == "pots", spread, rails)
+        spread, rails = (
+            rules.noise.spread(rules.physics, speed=observations.SHOWN_SPEED),
+            rules.cue_row[C_RAILS:],
+        )
+        self._view: observations.View = observations.View(rules.observation == "pots", spread, rails)
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False

@@ -109,9 +109,7 @@ def test_tables_that_have_ended_stand_still_until_they_are_reset():
     assert tables.step(np.zeros((4, 7)))[3].tolist() == [False, True, True, False]
 
 
-def test_a_reset_is_needed_and_actions_are_one_array_a_seat():
+def test_a_reset_is_needed():
     tables = sn.MatchVectorEnv(2, threads=1)
     with pytest.raises(gymnasium.error.ResetNeeded):
         tables.step(np.zeros((2, 7)))
-    with pytest.raises(ValueError, match="must be two arrays"):
-        sn.MatchVectorEnv(2, seats=({}, {"action": "discrete"}), threads=1).step(np.zeros((2, 7)))

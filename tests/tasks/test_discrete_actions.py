@@ -96,7 +96,7 @@ def _windows(positions, on_table, on, touching, out):
 
 @entry
 def _lines(positions, on_table, on, found):
-    return lines.find_lines(positions, on_table, on, found)
+    return lines.find_lines(positions, on_table, on, found, False)
 
 
 def windows_of(positions, on_table, on, touching=0):
