@@ -77,8 +77,7 @@ def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
 def begin_at(
     start: Start | None, tables: Tables, k: int, rng: np.random.Generator, *, seeded: bool, keyed: bool
 ) -> bool:
-    """Begin on table k with ``start``, if it is not dealt. Its random stream is that of a state unless it is ``seeded``; else
-    it gets a key from ``rng`` if it has none. Returns whether ``rng`` has taken the state's, which is from no seed."""
+    """Begin on table k with ``start``, if not None, and its stream, or a key from ``rng`` -> whether ``rng`` took a state."""
     if isinstance(start, State | FrameState):
         tables.set_state(k, start)
         if not seeded:

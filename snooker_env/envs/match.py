@@ -34,24 +34,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     ``agent_selection`` stays as long as the player scores. Actions: ``Box(-1, 1, (7,), float32)``, speed, side, top,
     aim, place in the D (two numbers), decision after a foul, or more or fewer with the options; or ``Discrete(540)``,
     with ``action_mask(agent)``. Observations and infos are those of a frame of ``SnookerEnv`` as each player sees it;
-    the rewards of both sum to zero. ``reset(options=...)`` takes "state", "position" or "breaker" (0 or 1).
-
-    Parameters
-    ----------
-    options, seats, render_mode, render_size, **keywords
-        As in ``match_env``.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> env = sn.match_env(noise="club", action="discrete")
-    >>> env.reset(seed=1)
-    >>> for agent in env.agent_iter(max_iter=3):
-    ...     observation, reward, terminated, truncated, info = env.last()
-    ...     env.step(None if terminated or truncated else int(info["action_mask"].argmax()))
-    >>> env.strokes
-    3
-    """
+    the rewards of both sum to zero. ``reset(options=...)`` takes "state", "position" or "breaker" (0 or 1)."""
 
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": 1}  # noqa: RUF012
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}

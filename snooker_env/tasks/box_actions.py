@@ -87,8 +87,7 @@ def shot_of(a, positions, on_table, on, options, law, work):
 
 
 class Actions:
-    """The box action space; docs/environment/specification.md says what its components mean: speed, side,
-    top, aim, then elevation, the place in the D (two), nomination, decision, declaration."""
+    """The box action space: speed, side, top, aim, then elevation, place in the D (two), nomination, decision, declaration."""
 
     aim: str
     elevation: bool

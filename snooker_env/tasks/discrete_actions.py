@@ -100,8 +100,7 @@ def _lacks_room(positions, on_table, rails, ax, ay):
 
 @kernel
 def _without_room(positions, on_table, cue, rows, pots, many, out):
-    """Of the ``many`` lines in ``rows`` (``pots`` or not) clear the choices in ``out`` (SIZE,) whose cue must be steeper than
-    ``STEEPEST``, unless none were left."""
+    """Clear the choices in ``out`` (SIZE,) along ``many`` lines whose cue must be steeper than ``STEEPEST``, unless none were left."""
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]

@@ -208,8 +208,7 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) meets a ball on: the middle of the widest, then nearest
-    window about ``about``, or ``about`` itself."""
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest, nearest window about ``about``, or that itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

@@ -277,8 +277,7 @@ MOST_STEPS = 20  # steps of an episode of one stroke at most: a player who fouls
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, through, replies, played, output):
-    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether one stroke was to be played,
-    and was. No end stays ``due``."""
+    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether its only one was. No end stays ``due``."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -366,8 +365,7 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 
 def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Judge in ``b.seen`` the shots that ``remember`` took for no attempts -> their gaps [m], by row: they are played again,
-    uncounted, with their path. If no ball on can be hit, only balls on ahead stay."""
+    """Play the shots that ``remember`` took for no attempts again and judge them -> gaps [m], by row."""
     positions, on_table, game, *_ = tables.arrays
     cushions, m, gaps = (tables.rules.table.noses, tables.rules.table.jaws), len(which), {}
     for j in np.flatnonzero((b.status[:m] == _OK) & (b.seen[:m, stroke.ATTEMPT] == 0)).tolist():

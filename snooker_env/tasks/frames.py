@@ -19,7 +19,6 @@ from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import scale_to_unit
 from . import frame_kernels
 from .box_actions import Actions
 from .discrete_actions import Choices
@@ -38,6 +37,8 @@ from .visit import Visits
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
 Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
 """Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
+Prepare: TypeAlias = Callable[[Ints, ShotBuffers], Ints]
+"""Carries strokes of tables out up to the strike; returns the tables with a stroke."""
 
 
 class Opponent(Protocol):
@@ -131,11 +132,8 @@ class Frames(Tables):
     @property
     def _parts(self):
         """For kernels: the parts of ``TableArrays``, ``Layouts`` and ``frame_kernels.Setting``, in plain tuples."""
-        saved, setting = (
-            (self._saved_positions, self._saved_on_table),
-            (*self._numbers, self._lot, self._jaws),
-        )
-        return self.arrays, saved, setting
+        saved = self._saved_positions, self._saved_on_table
+        return self.arrays, saved, (*self._numbers, self._lot, self._jaws)
 
     def _columns(self) -> tuple[str, ...]:
         more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due", "through")
@@ -190,23 +188,16 @@ class Frames(Tables):
         return playing[:m]
 
     def complete(
-        self,
-        which: Ints,
-        out: StepOutput,
-        buffers: ShotBuffers,
-        crew: Crew,
-        *,
-        reported: bool,
-        alone: bool = False,
+        self, which: Ints, out: StepOutput, b: ShotBuffers, crew: Crew, *, reported: bool, alone: bool = False
     ) -> None:
         """Play and judge the shots struck. ``reported``: in ``out``; ``alone``: the agent plays on."""
         if not len(which):
             return
-        unfinished = self.run(which, buffers)
-        self._conclude(which, buffers, out, reported, alone)
+        unfinished = self.run(which, b)
+        self._conclude(which, b, out, reported, alone)
         for j in unfinished:
-            self._conclude(which[j : j + 1], self.again(which, j, buffers), out, reported, alone)
-        crew.saw(which, buffers, reported)
+            self._conclude(which[j : j + 1], self.again(which, j, b), out, reported, alone)
+        crew.saw(which, b, reported)
 
     def _conclude(self, which, b, out, reported, alone):
         tables, saved, setting = self._parts
@@ -218,13 +209,7 @@ class Frames(Tables):
         played = self._played if reported else self._replies
         frame_kernels.conclude(which, tables, b.played, setting, reported, alone, played, out.arrays)
 
-    def turn(
-        self,
-        prepare: Callable[[Ints, ShotBuffers], Ints],
-        out: StepOutput,
-        crew: Crew,
-        which: Ints | None = None,
-    ) -> Bools:
+    def turn(self, prepare: Prepare, out: StepOutput, crew: Crew, which: Ints | None = None) -> Bools:
         """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
         playing = np.flatnonzero(~self.are_over()) if which is None else which
         self._played[playing] = 0
@@ -233,8 +218,7 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
-        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns where there was a
-        stroke, (n,)."""
+        """One turn on each table that goes on; ``actions``: of each side (n, k). Returns where there was a stroke, (n,)."""
         going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -245,7 +229,6 @@ class Frames(Tables):
         out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
         return self._played > 0
 
     def go_on(self, which: Ints) -> None:
@@ -278,18 +261,15 @@ class Frames(Tables):
             crew(playing, lambda which, _: self._finish(which, out))
         if same_step:
             ended = np.flatnonzero(out.terminated | out.truncated)
-            # of the table as it lies, before the next rack
-            crew(ended, lambda which, _: self.show_masks(which, out.last_masks))
+            out.keep_masks(ended)
             self._start(ended, out, crew)
         elif anew:
             self._start(np.flatnonzero(waiting), out, crew)
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
         counted = self.due, self.through, self._replies, self._played
         frame_kernels.finish(which, *self._parts, *counted, out.arrays)
-        self.show_strokes(which, which, out.observations)
-        self.show_conditions(which, out)
+        self.show_rest(which, out)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
@@ -310,7 +290,6 @@ class Frames(Tables):
         self.begun[wanted] = False  # until the opponent has played, if it breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _start(self, which, out, crew, breakers=None):
         """New frames, with the opponent's first visit if it breaks."""
@@ -327,8 +306,7 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); without them the lot says who does (in
-        an episode of one stroke the agent)."""
+        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); without them by lot, of one stroke the agent."""
         plan, first = self.rules.plan, np.full(len(which), AGENT)
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         if drawn:  # a number in any case, so that the errors of strokes do not depend on it
@@ -345,14 +323,14 @@ class Frames(Tables):
 
     def _show(self, which, out, *, fresh):
         frame_kernels.show(which, fresh, AGENT, *self._parts, self._replies, out.arrays, out.last)
-        self.show_strokes(which, which, out.observations)
-        self.show_conditions(which, out)
+        self.show_rest(which, out)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: output of the last stroke."""
         out, first = self.output(), np.zeros(1, np.int64)  # the entries that depend on the player
         frame_kernels.show(first, False, player, *self._parts, self._replies, out.arrays, out.last)
-        self.show_conditions(slice(None), out)
+        if self.rules.drawn:
+            out.reals[:, -CONDITIONS:] = self.conditions
         if last is not None:
             for column in (I_POINTS, I_SECONDS):
                 out.reals[0, column] = last.reals[0, column]
@@ -362,9 +340,7 @@ class Frames(Tables):
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, *self._parts, rows)
-        self.show_strokes(which, np.arange(len(which)), rows, player)
-        if self.rules.observed:
-            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
+        self.observe_rest(which, np.arange(len(which)), rows, player)
         return rows
 
     # states

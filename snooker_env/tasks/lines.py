@@ -177,8 +177,7 @@ def line_of(positions, on_table, on, rows):
 
 @kernel
 def aim_at_ball(aim, stroke, positions, on_table, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, reaches the ball that lies
-    in the direction ``aim``."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation) reaches the ball that lies in the direction ``aim``."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return aim
     x, y = positions[0, 0], positions[0, 1]

@@ -398,8 +398,7 @@ class Options:
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
-        """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
-        with ``task``, of those of this task. ValueError for an unknown group or task."""
+        """Name and default of each option of a group of ``GROUPS``, or of those of this ``task``. ValueError for an unknown one."""
         members = GROUPS[choice("name", name, GROUPS)]
         kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
         keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}

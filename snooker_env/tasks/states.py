@@ -45,9 +45,8 @@ class FrameState(NamedTuple):
     due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
     stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
-    frames: tuple[int, int] | None = None  # of a match, as the next two: the frames that each player has won
+    frames: tuple[int, int] | None = None  # of a match, as the next: the frames that each player has won
     first_break: int | None = None  # who broke first
-    best_of: int | None = None  # of how many frames at most
     conditions: dict[str, float] | None = None  # the constants drawn, by name; None: they are fixed
 
 
@@ -169,8 +168,7 @@ def check_visit(
 def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
-    """The ``FrameState`` that a dict describes; ValueError names the first wrong part. ``lot``: whether a player may be asked
-    who begins at a re-spotted black."""
+    """The ``FrameState`` of a dict; ValueError names the first wrong part. ``lot``: whether a player may be asked who begins."""
     conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
@@ -202,7 +200,7 @@ def check_frame_state(
     if not rules.frames:
         return made
     frames, first_break = _check_match(state, frame, rules.frames)
-    return made._replace(frames=frames, first_break=first_break, best_of=rules.frames)
+    return made._replace(frames=frames, first_break=first_break)
 
 
 def _check_match(state, frame, best_of):

@@ -99,8 +99,7 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def played_in(intended, positions, on_table, cue_row, shot):
-    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; ``shot`` records
-    what was done."""
+    """The stroke that is ``intended``, its aim the cue's, as the cue has room for it; ``shot`` records what was done."""
     rails, most = cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
     played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
     for c in range(5):
@@ -110,8 +109,7 @@ def played_in(intended, positions, on_table, cue_row, shot):
 
 @kernel
 def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
-    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. Where these took the cue's room, it
-    is raised once more."""
+    """Shot j: the cue ball ``struck`` with errors in place of ``intended``; where these took the cue's room, it is raised once more."""
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
@@ -193,8 +191,7 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them too, and
-    whether it was a jump shot."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them, and jumps."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
@@ -265,8 +262,7 @@ class ShotBuffers:
 
 
 def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool = False) -> None:
-    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each. Shots that are
-    played ``again`` count once."""
+    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each; ``again``: uncounted."""
     count(0 if again else m)
     table = rules.table
     buffers.enlarged = {}

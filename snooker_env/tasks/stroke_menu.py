@@ -62,8 +62,7 @@ def safe_stroke(safety, end_red, rows, positions, on_table, on, law, work):
 
 @kernel(seconds=1, uses=(lines.aim_on, safe_stroke))
 def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
-    """(speed, side, top, aim, elevation) of the choice ``index``; if that is not there, of the same stroke along the last line
-    that is, or, for a decision, of the last stroke."""
+    """(speed, side, top, aim, elevation) of the choice ``index``; of one that is not there, along the last line that is."""
     safety = min(index - speeds * PER_SPEED, SAFETIES - 1)
     if safety < 0:
         line, speed, side, top = menu_stroke(index, speeds)

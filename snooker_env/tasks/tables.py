@@ -121,6 +121,11 @@ class StepOutput:
         """The arrays that keep the end of an episode where another one starts."""
         return self.last_observations, self.last_reals, self.last_counts
 
+    def keep_masks(self, ended: Ints) -> None:
+        """Keep the masks of the tables ``ended`` as they lie, before the next episode."""
+        if len(self.last_masks):
+            self.last_masks[ended] = self.masks[ended]
+
 
 class Crew:
     """Runs ``task(part, buffers)``, here on all at once."""
@@ -211,9 +216,7 @@ class Tables(ABC):
         nobody = np.empty(0, np.int64)
         choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
-        out = StepOutput(*sizes, last=last, choices=choices)
-        self.show_conditions(slice(None), out)
-        return out
+        return StepOutput(*sizes, last=last, choices=choices)
 
     def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
@@ -264,18 +267,23 @@ class Tables(ABC):
             discrete_actions.masks(which, *balls, actions.pack(), self.rules.cue_row, out)
         return out
 
-    def show_masks(self, which: Ints, masks: Masks) -> None:
-        """Write the available choices of the tables ``which`` into ``masks``; nothing if it has no rows."""
-        if len(masks) and len(which):
-            masks[which] = self.action_masks(which)
+    def show_rest(self, which: Ints, out: StepOutput) -> None:
+        """Write what the kernels leave of the results for the tables ``which``: strokes foreseen, constants, masks."""
+        self.observe_rest(which, which, out.observations)
+        if self.rules.drawn:
+            out.reals[which, -CONDITIONS:] = self.conditions[which]
+        if len(out.masks):
+            out.masks[which] = self.action_masks(which)
 
-    def show_strokes(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
-        """With ``observation="strokes"`` write what ``player`` foresees of the menus of the tables ``which`` into ``rows[at]``."""
+    def observe_rest(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
+        """Write what they leave of the observations of ``player`` on the tables ``which`` into ``rows[at]``."""
         if self.rules.observation == "strokes":
             tables = self.positions, self.on_table, self.game
             law = self.rules.rule_set.code, self.cues, self.phys, *self.rules.fidelity
             errors = self._errors[min(player, len(self._errors) - 1)]
             foresee(which, at, player, tables, law, errors, rows)
+        if self.rules.observed:
+            rows[at, -CONDITIONS:] = scale_to_unit(self.conditions[which])
 
     def are_over(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""
@@ -312,13 +320,6 @@ class Tables(ABC):
         self.conditions[which] = values
         pack_into(self.phys, which, values, self.rules.physics)
         self.cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
-
-    def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
-        """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
-        if self.rules.drawn:
-            out.reals[which, -CONDITIONS:] = self.conditions[which]
-        if self.rules.observed:
-            out.observations[which, -CONDITIONS:] = scale_to_unit(self.conditions[which])
 
     def physics_of(self, k: int) -> Physics:
         """The constants of table k."""

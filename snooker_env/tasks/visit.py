@@ -14,8 +14,6 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_CO
 from ..game.layouts import deal_tables
 from ..game.pots import POT_COLUMNS
 from ..geometry import BALL_RADIUS
-from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
 from . import observations
 from .kernel_arrays import C_RAILS, OutputArrays, PlayedArrays
@@ -101,15 +99,12 @@ class Visits(Tables):
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         menu = observations.STROKE_SIZE * menu_size(rules.speeds, False) + len(observations.STATE_ENTRIES)
-        self.SIZE = {"pots": observations.POTS_SIZE, "strokes": menu}.get(
-            rules.observation, observations.SIZE
-        )
+        sizes = {"pots": observations.POTS_SIZE, "strokes": menu}
+        self.SIZE = sizes.get(rules.observation, observations.SIZE)
         super().__init__(rules, n, limit=limit)
-        spread, rails = (
-            rules.noise.spread(rules.physics, speed=observations.SHOWN_SPEED),
-            rules.cue_row[C_RAILS:],
-        )
-        self._view: observations.View = observations.View(rules.observation == "pots", spread, rails)
+        spread = rules.noise.spread(rules.physics, speed=observations.SHOWN_SPEED)
+        pots, rails = rules.observation == "pots", rules.cue_row[C_RAILS:]
+        self._view: observations.View = observations.View(pots, spread, rails)
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
@@ -124,12 +119,10 @@ class Visits(Tables):
                 crew.saw(playing, buffers, True)
             if same_step:
                 ended = which[out.terminated[which] | out.truncated[which]]
-                # of the table as it lies, before the next one is dealt
-                self.show_masks(ended, out.last_masks)
+                out.keep_masks(ended)
                 self._begin(ended, out)
             elif anew:
                 self._begin(which[waiting[which]], out)
-            self.show_masks(which, out.masks)
 
         crew(np.arange(self.n), play)
 
@@ -144,7 +137,7 @@ class Visits(Tables):
         rules = REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke
         tables = self.positions, self.on_table, self.game
         _conclude(which, *tables, b.played, rules, self._view, out.arrays)
-        self.show_strokes(which, which, out.observations)
+        self.show_rest(which, out)
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
@@ -153,15 +146,13 @@ class Visits(Tables):
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
                 self.draw_conditions(which)
             _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays, out.last)
-            self.show_strokes(which, which, out.observations)
-            self.show_conditions(which, out)
+            self.show_rest(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
             self._begin(which[~wanted[which]], out, fresh=False)
-            self.show_masks(which, out.masks)
 
         self.begun[wanted] = True
         crew(np.arange(self.n), begin)
@@ -169,9 +160,7 @@ class Visits(Tables):
     def observe(self, which: Ints, player: int = 0) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, self._view, rows)
-        self.show_strokes(which, np.arange(len(which)), rows)
-        if self.rules.observed:
-            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
+        self.observe_rest(which, np.arange(len(which)), rows)
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:
