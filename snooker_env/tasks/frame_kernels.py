@@ -364,23 +364,23 @@ def gap_of(positions, on_table, row, shots, path, j):
     return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
 
 
-def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Play the shots that ``remember`` took for no attempts again and judge them -> gaps [m], by row."""
-    positions, on_table, game, *_ = tables.arrays
-    cushions, m, gaps = (tables.rules.table.noses, tables.rules.table.jaws), len(which), {}
+def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> None:
+    """Play the shots that ``remember`` took for no attempts once more, with their path, and judge them."""
+    cushions, m = (tables.rules.table.noses, tables.rules.table.jaws), len(which)
     for j in np.flatnonzero((b.status[:m] == _OK) & (b.seen[:m, stroke.ATTEMPT] == 0)).tolist():
         k = int(which[j])
-        here, row, world = on_table[k], game[k], tables.world(k)
-        one, at = b, j
+        p, here, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        world, one, at = tables.world(k), b, j
         if not b.segments.shape[1]:
-            one, at = stroke.play_again(b, j, b.log, (positions[k], here), world, path=True), 0
-        gaps[j] = gap_of(positions[k], here, row, one.played, (one.segments, one.n_segments), at)
+            one, at = stroke.play_again(b, j, b.log, (p, here), world, path=True), 0
+        gap = gap_of(p, here, row, one.played, (one.segments, one.n_segments), at)
         placed, on = row[columns.IN_HAND] or row[columns.ANYWHERE], tables.on(k)
-        if gaps[j] > ATTEMPT_GAP and not placed and shut_in(positions[k], here, on, *cushions, BALL_RADIUS):
-            ahead = (positions[k] - positions[k, CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
-            only = here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
+        if gap > ATTEMPT_GAP and not placed and shut_in(p, here, on, *cushions, BALL_RADIUS):
+            ahead = (p - p[CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
+            only = (
+                here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
+            )  # no ball on can be hit: those ahead stay
             only[CUE] = True
-            one = stroke.play_again(b, j, b.log, (positions[k], only), world, path=True)
-            gaps[j] = gap_of(positions[k], only, row, one.played, (one.segments, one.n_segments), 0)
-        b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
-    return gaps
+            one = stroke.play_again(b, j, b.log, (p, only), world, path=True)
+            gap = gap_of(p, only, row, one.played, (one.segments, one.n_segments), 0)
+        b.seen[j, stroke.ATTEMPT] = gap <= ATTEMPT_GAP

@@ -212,7 +212,7 @@ class Noise:
         return Spread(core, self.lapse, self.lapse_factor)
 
     def pack(self, R: float, *, real: bool = False) -> Floats:
-        """For kernels: float64 (11,), in columns ``N_*``. ``R``: the ball's radius [m]; ``real``: whether errors grow with the elevation."""
+        """float64 (11,) for kernels, in columns ``N_*``. ``R``: the radius [m]; ``real``: whether errors grow with the elevation."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
         grows = 1.0 / TWICE if real else 0.0, self.growth
         deviations = self.speed_abs, self.speed_rel, tip, *turns

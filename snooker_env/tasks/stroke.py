@@ -161,7 +161,7 @@ def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
     shots, (options, cues, noise, phys), work = StruckArrays(*shots), packed, new_work()
-    solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
+    choice, mask_before, intended = -1.0, 0, (0.0, 0.0, 0.0, 0.0, 0.0)
     for j in range(which.shape[0]):
         k = which[j]
         a, p, on, cue_row = actions[k], positions[k], on_table[k], cues[row_of(k, cues)]
@@ -174,16 +174,13 @@ def address(which, actions, tables, shots, packed, fidelity):
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
-            before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
+            before, new = which[max(0, j - 1)], a[0] != choice or mask != mask_before
             if new or phys.shape[0] > 1 or not _same_table(p, on, positions[before], on_table[before]):
-                if options[A_SPEEDS]:
-                    speeds = int(options[A_SPEEDS])
-                    chosen = solve_menu_stroke(int(a[0]), speeds, p, on, mask, law, work)
+                choice, mask_before, speeds = a[0], mask, int(options[A_SPEEDS])
+                if speeds:
+                    intended = solve_menu_stroke(int(choice), speeds, p, on, mask, law, work)
                 else:
-                    chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
-                solved[0], mask_before = a[0], mask
-                solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
-            intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
+                    intended = discrete_actions.solve_choice(int(choice), p, on, mask, law, work)
         else:
             intended = shot_of(a, p, on, mask, options, law, work)
         strike(intended, p, on, streams[k], cue_row, noise, j, shots)
