@@ -101,7 +101,7 @@ class Frames(Tables):
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
         if rules.observation == "strokes":
             self.SIZE += STROKE_SIZE * menu_size(rules.speeds, True) - BALLS_SIZE
-        elif rules.misses:
+        elif rules.miss != "off":
             self.SIZE += REPLACED_SIZE
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
@@ -201,7 +201,7 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, reported, alone):
         tables, saved, setting = self._parts
-        if self.rules.misses:
+        if self.rules.miss != "off":
             cushions = self.rules.table.noses, self.rules.table.jaws
             frame_kernels.remember(which, tables, saved, b.played, *cushions)
         if self._miss == columns.ATTEMPTS:

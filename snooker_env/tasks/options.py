@@ -141,11 +141,6 @@ class Rules:
         """The ``RuleSet`` of the game."""
         return rule_set(self.game)
 
-    @property
-    def misses(self) -> bool:
-        """Whether a foul and a miss is called."""
-        return self.miss != "off"
-
     def pack(self) -> Packed:
         """For the kernels, with one row of cues and constants for all tables."""
         errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
@@ -420,7 +415,7 @@ def observation_space_of(
     rules, frame = options.rules, options.task != "visit"
     actions = rules.actions if actions is None else actions
     choices = actions.choices if isinstance(actions, Choices) else 0
-    more = {"replaced": rules.misses, "conditions": rules.observed, "speeds": rules.speeds}
+    more = {"replaced": rules.miss != "off", "conditions": rules.observed, "speeds": rules.speeds}
     return observations.space(rules.observation, frame=frame, choices=choices, **more)
 
 
