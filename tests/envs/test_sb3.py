@@ -10,6 +10,7 @@ from stable_baselines3.common.evaluation import evaluate_policy
 
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks.tables import COUNTS, REALS
+from tests.envs.one_by_one import same
 from tests.processes import ROOT, python
 from tests.refusals import refused
 
@@ -20,12 +21,6 @@ def both(n, **options):
     ours = SnookerVecEnv(n, info_keys=KEYS, **options)
     ours.seed(5)
     return ours, make_vec_env("Snooker-v0", n, env_kwargs=options, seed=5)
-
-
-def equal(a, b):
-    if isinstance(a, dict):
-        return set(a) == set(b) and all(equal(a[key], b[key]) for key in a)
-    return np.array_equal(a, b) and getattr(a, "dtype", None) == getattr(b, "dtype", None)
 
 
 TARGET = {"aim": "target"}
@@ -44,14 +39,14 @@ def test_it_gives_what_dummy_vec_env_gives(options):
     """Observations, rewards, ends, infos, terminal observations, episodes: all but the clock."""
     ours, theirs = both(6, **options)
     assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
-    assert equal(ours.reset(), theirs.reset())
+    assert same(ours.reset(), theirs.reset())
     rng, ends, cut = np.random.default_rng(0), 0, 0
     for _ in range(40):
         a = rng.uniform(-1, 1, (6, 4)).astype(np.float32)
         a[:, 1:4] *= 0.2
         a = rng.integers(0, 60, 6) if "action" in options else a
         (o, r, d, infos), (o2, r2, d2, infos2) = ours.step(a), theirs.step(a)
-        assert equal(o, o2) and equal(r, r2) and equal(d, d2)
+        assert same(o, o2) and same(r, r2) and same(d, d2)
         for k in range(6):
             info, other = infos[k], dict(infos2[k])
             if not d[k]:
@@ -59,7 +54,7 @@ def test_it_gives_what_dummy_vec_env_gives(options):
             else:
                 ends, cut = ends + 1, cut + info["TimeLimit.truncated"]
                 assert info["episode"].pop("t") >= 0 and other["episode"].pop("t") >= 0
-            assert set(info) == set(other) and all(equal(info[key], other[key]) for key in info)
+            assert set(info) == set(other) and all(same(info[key], other[key]) for key in info)
             assert all(type(info[key]) is type(other[key]) for key in KEYS)
     assert ends > 60 and (cut > 5) == ("max_episode_steps" in options)
 
@@ -69,12 +64,12 @@ def test_a_seed_at_the_start_is_as_one_given_later():
     at_once, later, other = SnookerVecEnv(5, seed=3), SnookerVecEnv(5), SnookerVecEnv(5, seed=np.int64(4))
     later.seed(3)
     first = at_once.reset()
-    assert np.array_equal(first, later.reset()) and np.array_equal(first[1:], other.reset()[:4])
+    assert np.array_same(first, later.reset()) and np.array_same(first[1:], other.reset()[:4])
     assert at_once.tables.np_random_seed == (3, 4, 5, 6, 7)
     a = np.zeros((5, 4), np.float32)
-    assert all(np.array_equal(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
-    assert not np.array_equal(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
-    assert not np.array_equal(at_once.reset(), first)
+    assert all(np.array_same(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
+    assert not np.array_same(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
+    assert not np.array_same(at_once.reset(), first)
 
 
 @pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
