@@ -245,10 +245,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        each = observations.arrange(self.options.rules.observation, out.last_observations, out.last_masks)
+        last, reals, counts = out.last
+        each = observations.arrange(self.options.rules.observation, last, out.last_masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
-        info = self.tables.infos(out.last_reals, out.last_counts, done)
+        info = self.tables.infos(reals, counts, done)
         return {"final_obs": final, "_final_obs": done.copy(), "final_info": info, "_final_info": done.copy()}

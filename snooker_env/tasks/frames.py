@@ -35,6 +35,7 @@ from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
 
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
+_OF_MATCHES = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
 Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
 """Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
 Prepare: TypeAlias = Callable[[Ints, ShotBuffers], Ints]
@@ -74,7 +75,7 @@ def sayings(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints
 
 
 class Frames(Tables):
-    """n tables, each in the middle of its own frame."""
+    """n tables, each in the middle of its own frame, or of a frame of its match; one that the referee stops is truncated."""
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
@@ -93,6 +94,8 @@ class Frames(Tables):
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
     ):
         rules = rules.rules if isinstance(rules, Options) else rules
+        if rules.frames:
+            self.COUNTS = (*self.COUNTS, "frames_won", "opponent_frames", "frame")
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
         self._saved_positions = np.zeros((n, N_BALLS, 2))
@@ -232,8 +235,23 @@ class Frames(Tables):
         return self._played > 0
 
     def go_on(self, which: Ints) -> None:
-        """After each turn: the next frame of a match, where one has ended. Here there is none."""
-        return
+        """After each turn, in a match: count the frames that have ended, and set up the next ones unless it is decided."""
+        ended = which[self.game[which, columns.OVER] != 0] if self.rules.frames else which[:0]
+        if not len(ended):
+            return
+        game, plan = self.game, self.rules.plan
+        game[ended, columns.FRAMES_0 + game[ended, columns.WINNER]] += 1
+        won = game[ended, columns.FRAMES_0 : columns.FRAMES_1 + 1]
+        if not len(ended := ended[won.max(axis=1) <= self.rules.frames // 2]):
+            return
+        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+        kept = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK, columns.STEPS, columns.PAID]
+        before = game[ended][:, kept]  # what was not paid stays so
+        if self._reward != FRAMES_PAID:
+            before[:, -1] -= self.lead()[ended]
+        first = before[:, :3].sum(axis=1) % 2 if len(self.seats) == 2 else np.full(len(ended), AGENT)
+        frame_kernels.begin(ended, first, plan.in_hand, self.on_table, game)
+        game[ended[:, None], kept] = before
 
     # steps and resets of the frame task
 
@@ -350,7 +368,11 @@ class Frames(Tables):
         strokes, opponent = self.game[k, [columns.STROKES, columns.OPPONENT]].tolist()
         unpaid = int(self._worth(k) - self.game[k, columns.PAID])
         paid = {"opponent": opponent, "unpaid": unpaid, "due": bool(self.due[k])}
-        return super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
+        state = super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
+        if not self.rules.frames:
+            return state
+        *won, first = self.game[k, _OF_MATCHES].tolist()
+        return state | {"frames": won, "first_break": first, "best_of": self.rules.frames}
 
     def _worth(self, k):
         """What the agent has earned in the episode so far, as its reward counts."""
@@ -384,7 +406,9 @@ class Frames(Tables):
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.layouts_before, k)
         self.game[k, columns.OPPONENT] = state.opponent
-        self.game[k, columns.FIRST_BREAK] = state.frame.breaker
+        self.game[k, _OF_MATCHES] = *(state.frames or (0, 0)), state.frame.breaker
+        if state.first_break is not None:
+            self.game[k, columns.FIRST_BREAK] = state.first_break
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
         self._set_state(k, state)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
@@ -411,50 +435,13 @@ class Frames(Tables):
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"
-        return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        won = self.game[k, _OF_MATCHES].tolist()
+        match = f"frames {won[0]} - {won[1]}   " if self.rules.frames else ""
+        return (
+            match
+            + f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        )
 
 
-class Matches(Frames):
-    """n tables, each in a match; stopped by the referee in a frame, it is truncated."""
-
-    COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
-
-    def go_on(self, which: Ints) -> None:
-        """Count the frames that have just ended, and set up the next ones unless the match is decided."""
-        ended = which[self.game[which, columns.OVER] != 0]
-        if not len(ended):
-            return
-        game, plan = self.game, self.rules.plan
-        game[ended, columns.FRAMES_0 + game[ended, columns.WINNER]] += 1
-        won = game[ended, columns.FRAMES_0 : columns.FRAMES_1 + 1]
-        if not len(ended := ended[won.max(axis=1) <= self.rules.frames // 2]):
-            return
-        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        kept = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK, columns.STEPS, columns.PAID]
-        before = game[ended][:, kept]  # what was not paid stays so
-        if self._reward != FRAMES_PAID:
-            before[:, -1] -= self.lead()[ended]
-        first = before[:, :3].sum(axis=1) % 2 if len(self.seats) == 2 else np.full(len(ended), AGENT)
-        frame_kernels.begin(ended, first, plan.in_hand, self.on_table, game)
-        game[ended[:, None], kept] = before
-
-    def get_state(self, k: int) -> dict[str, Any]:
-        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
-        first = int(self.game[k, columns.FIRST_BREAK])
-        match = {"frames": won, "first_break": first, "best_of": self.rules.frames}
-        return super().get_state(k) | match
-
-    def set_state(self, k: int, state: FrameState) -> None:
-        super().set_state(k, state)
-        assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
-        match = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
-        self.game[k, match] = *state.frames, state.first_break
-        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
-
-    def text(self, k: int) -> str:
-        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
-        return f"frames {won[0]} - {won[1]}   {super().text(k)}"
-
-
-TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Matches}
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Frames}
 """Which class plays each ``task``."""

@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from .._lib.types import Floats, Ints
+from .._lib.types import Floats
 from ..physics.parameters import Physics
 
 # Columns of a cue's row: one row for all tables, or one for each.
@@ -51,10 +51,6 @@ class CueLaw(NamedTuple):
     rails: Floats  # as in a cue's row
 
 
-class Work(NamedTuple):
-    """Work space of the kernels that seek a line of the cue ball; ``lines.new_work`` makes it."""
-
-    lines: Floats  # (LINE_ROWS, POT_COLUMNS): the pots or lines of a table, and windows
-    motion: Floats  # (2, cloth.COLUMNS)
-    state: Ints  # (2,) phases of two balls
-    series: Floats  # of the solution of an impact
+Work = namedtuple("Work", "lines motion state series")
+"""Work space of the kernels that seek a line, of ``lines.new_work``: pots or lines, and windows (LINE_ROWS, POT_COLUMNS); motion
+(2, cloth.COLUMNS) and phases (2,) of two balls; the solution of an impact."""

@@ -104,9 +104,8 @@ class StepOutput:
         self.counts: Ints = np.zeros((n, counts), np.int64)
         # the same of the episodes that ended where new ones were started; else without rows
         m = n if last else 0
-        self.last_observations: Singles = np.zeros((m, size), np.float32)
-        self.last_reals: Floats = np.zeros((m, reals))
-        self.last_counts: Ints = np.zeros((m, counts), np.int64)
+        infos = np.zeros((m, reals)), np.zeros((m, counts), np.int64)
+        self.last: tuple[Singles, Floats, Ints] = (np.zeros((m, size), np.float32), *infos)
         # the available choices, likewise; without rows unless the observations hold them
         self.masks: Masks = np.zeros((n if choices else 0, choices), np.int8)
         self.last_masks: Masks = np.zeros((m if choices else 0, choices), np.int8)
@@ -115,11 +114,6 @@ class StepOutput:
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
         return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
-
-    @property
-    def last(self) -> tuple[Singles, Floats, Ints]:
-        """The arrays that keep the end of an episode where another one starts."""
-        return self.last_observations, self.last_reals, self.last_counts
 
     def keep_masks(self, ended: Ints) -> None:
         """Keep the masks of the tables ``ended`` as they lie, before the next episode."""
