@@ -10,7 +10,6 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
-from .._lib.check import choice
 from .._lib.types import Action, Observation, RenderMode
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
@@ -51,8 +50,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     ):
         super().__init__()
         self.options = match_options(options, keywords)
-        if render_mode is not None:
-            choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []

@@ -29,15 +29,6 @@ class Record:
         self.strokes: list[Played] = []  # of both players; empty unless ``full``
         self.last_shot: Shot | None = last_shot  # the agent's; with ``full``, that of either player
 
-    def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
-        if self.full:
-            played = tables.record(k, buffers, j)
-            self.strokes.append(played)
-            self.last_shot = played.shot
-        elif mine:
-            self.last_shot = tables.shot(k, buffers, j)
-
 
 class OneTable:
     """An environment with one table: ``SnookerEnv``, and ``MatchEnv`` with two players."""
@@ -120,8 +111,13 @@ class OneTable:
             self._record = Record(full=full, last_shot=self._record.last_shot)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        """Called after each stroke of either player."""
-        self._record.saw(self.tables, k, buffers, j, mine)
+        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
+        record = self._record
+        if record.full:
+            record.strokes.append(self.tables.record(k, buffers, j))
+            record.last_shot = record.strokes[-1].shot
+        elif mine:
+            record.last_shot = self.tables.shot(k, buffers, j)
 
     def render(self) -> Picture:
         """Return a ``Picture``, with the paths of the last shot."""

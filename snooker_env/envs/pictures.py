@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 import gymnasium
 import numpy as np
 
+from .._lib.check import choice
 from .._lib.types import Bytes
 from ..physics.table import Table
 from ..render.table_picture import SIZE as SIZE
@@ -21,8 +22,10 @@ Picture: TypeAlias = Bytes | str | None  # uint8 (H, W, 3) with "rgb_array", str
 class Pictures:
     """The pictures of one environment, ``size`` [pixels], ``players`` on the bar; a copy has no window."""
 
-    def __init__(self, table: Table, mode: str | None, size: Any = SIZE, players: tuple[str, ...] = ()):
-        self.table, self.mode = table, mode
+    def __init__(
+        self, table: Table, mode: str | None, size: Any, players: tuple[str, ...] = (), modes: Any = MODES
+    ):
+        self.table, self.mode = table, None if mode is None else choice("render_mode", mode, modes)
         self.players: tuple[str, ...] = players
         self.size: tuple[int, int] = check_size(size, "render_size")
         self._window = None

@@ -7,7 +7,6 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import choice
 from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import require_choices
@@ -73,8 +72,6 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         self.tables = tables_of(self.options, opponent, 1)
         self.action_space: spaces.Space[Any] = self.options.rules.actions.space
         self.observation_space: spaces.Space[Any] = observation_space_of(self.options)
-        if render_mode is not None:
-            choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         names = ("Agent",) if self.options.task == "visit" else ("Agent", "Opponent")
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)

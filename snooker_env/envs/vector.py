@@ -14,7 +14,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike
 
-from .._lib.check import choice, integer
+from .._lib.check import integer
 from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import require_choices
@@ -91,8 +91,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
-        if render_mode is not None:
-            choice("render_mode", render_mode, PICTURES)
         self.render_mode = render_mode
         self.options, opponent = self._game_of(options, keywords)
         limit = NEVER if max_episode_steps is None else max_episode_steps
@@ -102,7 +100,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self.single_observation_space: spaces.Space[Any] = observation_space_of(self.options, actions)
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, n)
         self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, n)
-        self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, modes=PICTURES)
         self._generators: list[Any] = [None] * n
         self._generator_seeds = [-1] * n
         # has the table's stream a key, has it an episode, and has that ended?
