@@ -31,7 +31,7 @@ from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
 from .stroke_menu import menu_size
-from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables, uniform
+from .tables import I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables, uniform
 from .visit import Visits
 
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
@@ -79,7 +79,15 @@ class Frames(Tables):
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
-    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
+    COUNTS: tuple[str, ...] = (
+        *Tables.COUNTS,
+        "strokes",
+        "opponent_strokes",
+        "winner",
+        *FLAGS,
+        "misses",
+        "failures",
+    )
     SIZE = FRAME_SIZE
     COLUMNS = columns.COLUMNS
 
@@ -352,7 +360,8 @@ class Frames(Tables):
         if last is not None:
             for column in (I_POINTS, I_SECONDS):
                 out.reals[0, column] = last.reals[0, column]
-            out.counts[0, : len(COUNTS)] = last.counts[0, : len(COUNTS)]
+            many = len(Tables.COUNTS)
+            out.counts[0, :many] = last.counts[0, :many]
         return self.info(out, 0)
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
