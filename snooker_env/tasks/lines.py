@@ -151,31 +151,6 @@ def count_lines(positions, on_table, on, rows):
 
 
 @kernel
-def line_of(positions, on_table, on, rows):
-    """Direction of the best line of the cue ball. An inner kernel.
-
-    Parameters
-    ----------
-    positions, on_table : numpy.ndarray
-        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
-    on : int
-        Mask of the balls that may be struck first, bit i for ball i.
-    rows : float64 (LINE_ROWS, POT_COLUMNS)
-        Work space.
-
-    Returns
-    -------
-    float
-        Direction [rad] from +x: to the ghost ball of the widest direct pot, else the best line of
-        ``action="discrete"``. Over cushions it is that of a rolling ball, which another stroke must correct.
-    """
-    if find_pots(positions, on_table, on, BALL_RADIUS, rows[:1]):
-        return atan2(rows[0, GHOST_Y] - positions[0, 1], rows[0, GHOST_X] - positions[0, 0])
-    find_lines(positions, on_table, on, rows, False)
-    return rows[0, LINE_AIM]
-
-
-@kernel
 def aim_at_ball(aim, stroke, positions, on_table, law, work):
     """Direction [rad] in which the stroke (speed, side, top, elevation) reaches the ball that lies in the direction ``aim``."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:

@@ -38,9 +38,9 @@ MEANT = 13
 STRIKE_COLUMNS = MEANT + 5
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
-FIRST, TOUCHING, MOVED, DOWN, OFF, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = range(9)
-PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(9, 16)
-SEEN_COLUMNS = 16
+FIRST, DOWN, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = range(6)
+PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(6, 13)
+SEEN_COLUMNS = 13
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 
 
@@ -188,7 +188,7 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them, and jumps."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has some, and jumps."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
@@ -199,8 +199,7 @@ def see(j, shots, positions, on_table):
             down |= 1 << i
         elif shots.potted[j, i] == OFF_TABLE:
             off |= 1 << i
-    seen[FIRST], seen[TOUCHING], seen[MOVED], seen[DOWN], seen[OFF] = first, touching, moved, down, off
-    seen[JUMPED] = shots.aloft[j, CUE, 0] != 0.0
+    seen[FIRST], seen[DOWN], seen[JUMPED] = first, down, shots.aloft[j, CUE, 0] != 0.0
     return first, touching, moved, down, off
 
 
