@@ -59,23 +59,17 @@ def _target_line(positions, on_table, on, stroke, law, work):
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
-@kernel(uses=(aim_on,))
-def _on_picked_line(a, positions, on_table, on, elevation, law, work):
-    """``shot_of`` of an action that picks a pot or, where there is none, another line."""
-    speed = SLOWEST * exp(0.5 * (a[0] + 1.0) * _RATIO)
-    side, top = tip_on_disc(MOST_SIDE * a[1], MOST_TOP * a[2], law.max_offset)
-    many, pots = list_lines(positions, on_table, on, work.lines)
-    k, stroke = min(int(abs(a[3]) * many), many - 1), (speed, side, top, elevation)
-    aim = aim_on(k, pots, stroke, positions, on_table, on, law, work)
-    return speed, side, top, aim - squirt(side, law.end_mass_ratio), elevation
-
-
-@kernel(uses=(_target_line, _on_picked_line))
+@kernel(uses=(_target_line, aim_on))
 def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
     if options[A_AIM] == _POT:
-        return _on_picked_line(a, positions, on_table, on, elevation, law, work)
+        speed = SLOWEST * exp(0.5 * (a[0] + 1.0) * _RATIO)
+        side, top = tip_on_disc(MOST_SIDE * a[1], MOST_TOP * a[2], law.max_offset)
+        many, pots = list_lines(positions, on_table, on, work.lines)
+        k, stroke = min(int(abs(a[3]) * many), many - 1), (speed, side, top, elevation)
+        aim = aim_on(k, pots, stroke, positions, on_table, on, law, work)
+        return speed, side, top, aim - squirt(side, law.end_mass_ratio), elevation
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], law.max_offset)
     direction = pi * a[3]

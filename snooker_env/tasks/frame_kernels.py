@@ -54,17 +54,6 @@ class Setting(NamedTuple):
 
 
 @kernel
-def choose(k, what, tables, saved):
-    """Carry the allowed decision ``what`` after a foul out; whether a stroke of the same player follows."""
-    columns.choose(tables.game[k], what)
-    if what == columns.REPLACE:
-        p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
-        for i in range(N_BALLS):
-            p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
-    return what == columns.PLAY or what == columns.PLACE_ANYWHERE
-
-
-@kernel
 def give_up(row, reward):
     """Charge whoever gave a frame up, or lost by a third miss, with the points left, S4 R5(b)."""
     if reward != FRAMES_PAID:
@@ -74,7 +63,7 @@ def give_up(row, reward):
 
 @kernel
 def say(k, declared, decision, reward, tables, saved):
-    """Carry out what the striker may say, and says, before a stroke; whether one follows."""
+    """Carry out what the striker may say, and says, before a stroke; whether one of the same player follows."""
     row = tables.game[k]
     if declared == declarations.CONCEDES:
         columns.concede(row)
@@ -85,7 +74,17 @@ def say(k, declared, decision, reward, tables, saved):
         other = declared == declarations.OTHER_BEGINS
         columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
     elif row[columns.PHASE] == columns.CHOICE:
-        return choose(k, decision, tables, saved)
+        columns.choose(row, decision)
+        if decision == columns.REPLACE:
+            p, on, back, back_on = (
+                tables.positions[k],
+                tables.on_table[k],
+                saved.positions[k],
+                saved.on_table[k],
+            )
+            for i in range(N_BALLS):
+                p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
+        return decision == columns.PLAY or decision == columns.PLACE_ANYWHERE
     return declared == declarations.SAYS_NOTHING
 
 

@@ -207,8 +207,8 @@ class Tables(ABC):
 
     def output(self, *, last: bool = False) -> StepOutput:
         """New arrays for the results of a step or reset."""
-        nobody = np.empty(0, np.int64)
-        choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
+        shown = self.actions[0] if self.rules.observation == "masked" else None
+        choices = shown.choices if isinstance(shown, Choices) else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         return StepOutput(*sizes, last=last, choices=choices)
 
