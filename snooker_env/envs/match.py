@@ -14,7 +14,7 @@ from .._lib.types import Action, Observation, RenderMode
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices, require_choices
+from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Crew
@@ -94,21 +94,16 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def observe(self, agent: str) -> Observation:
         """Return the current observation of a player, in new arrays."""
-        turn = agent == self.agent_selection  # an error before reset()
-        side = PLAYERS.index(agent)
+        _, side = self.agent_selection, PLAYERS.index(agent)  # an error before reset()
         rows = self.tables.observe(np.zeros(1, np.int64), side)
-        masks = self._mask(side, turn) if self.options.rules.observation == "masked" else None
+        masks = self.action_mask(agent) if self.options.rules.observation == "masked" else None
         return observations.arrange(self.options.rules.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
-        side = PLAYERS.index(agent)
-        require_choices(self.tables.actions[side])
-        return self._mask(side, agent == self.agent_selection)
-
-    def _mask(self, side, turn):
-        available = self.tables.action_masks(side=side)[0]
-        return (available & (turn and not self.tables.are_over()[0])).astype(np.int8)
+        turn = agent == self.agent_selection and not self.tables.are_over()[0]
+        available = self.tables.action_masks(side=PLAYERS.index(agent))[0]
+        return (available & turn).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.

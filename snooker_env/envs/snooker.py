@@ -9,7 +9,6 @@ from gymnasium import spaces
 
 from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
-from ..tasks.discrete_actions import require_choices
 from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
@@ -118,7 +117,6 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
-        require_choices(self.options.rules.actions)
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:

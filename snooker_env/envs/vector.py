@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from .._lib.check import integer
 from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
-from ..tasks.discrete_actions import require_choices
 from ..tasks.options import NEVER, Options, observation_space_of
 from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
@@ -179,7 +178,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
-        require_choices(self.tables.actions[0])
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:

@@ -152,12 +152,6 @@ def masks(which, positions, on_table, game, options, cue, out):
                 at += 1
 
 
-def require_choices(actions: object) -> None:
-    """ValueError unless these actions are choices, which have masks."""
-    if not isinstance(actions, Choices):
-        raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
-
-
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
     With "nominate" in ``says``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those

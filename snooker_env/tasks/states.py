@@ -1,6 +1,6 @@
 """Is a saved state valid? Checks every part of the result of ``get_state`` before any of it is used."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -57,18 +57,6 @@ MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a visit, of a frame, and of a match; with drawn constants also "conditions"."""
 
 
-def check_keys(state: object, keys: Collection[str]) -> None:
-    """Raise ValueError unless ``state`` is a dict with exactly these keys."""
-    if not isinstance(state, dict):
-        raise refuse("state", state, "must be a state of get_state(), a dict")
-    if missing := sorted(set(keys) - set(state)):
-        allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
-        raise refuse_what("state", f"a dict without {missing}", allowed)
-    if unknown := [key for key in state if key not in keys]:
-        allowed = f"must be a state of get_state() here, with the keys {list(keys)} only"
-        raise refuse_what("state", f"a dict with {unknown}", allowed)
-
-
 def check_layout(
     names: tuple[str, str], positions: Sequence[Vector], on_table: object, table: Table, R: float
 ) -> tuple[Floats, Bools]:
@@ -123,11 +111,16 @@ def check_stream(stream: object) -> list[int]:
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def check_conditions(
-    state: Mapping[str, Any], keys: tuple[str, ...], rules: Rules
-) -> dict[str, float] | None:
-    """The constants drawn, in their order, None if they are fixed; ValueError for wrong ones or other keys."""
-    check_keys(state, (*keys, "conditions") if rules.drawn else keys)
+def check_keys(state: object, keys: tuple[str, ...], rules: Rules) -> dict[str, float] | None:
+    """The constants drawn, in their order, None if they are fixed; ValueError unless ``state`` is a dict with these keys."""
+    if not isinstance(state, dict):
+        raise refuse("state", state, "must be a state of get_state(), a dict")
+    keys = (*keys, "conditions") if rules.drawn else keys
+    allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
+    if missing := sorted(set(keys) - set(state)):
+        raise refuse_what("state", f"a dict without {missing}", allowed)
+    if unknown := [key for key in state if key not in keys]:
+        raise refuse_what("state", f"a dict with {unknown}", f"{allowed} only")
     if not rules.drawn:
         return None
     values = state["conditions"]
@@ -142,7 +135,7 @@ def check_visit(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
-    conditions, table, R = check_conditions(state, VISIT_KEYS, rules), rules.table, rules.physics.R
+    conditions, table, R = check_keys(state, VISIT_KEYS, rules), rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     on = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
@@ -169,7 +162,7 @@ def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
     """The ``FrameState`` of a dict; ValueError names the first wrong part. ``lot``: whether a player may be asked who begins."""
-    conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
+    conditions = check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
+from .._lib.check import refuse
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import COLOURS_MASK, N_BALLS, BallOn, balls_on, mask_of_present
@@ -250,10 +251,11 @@ class Tables(ABC):
         return balls_on(int(row[BALL_ON]), mask) | free
 
     def action_masks(self, which: Ints | None = None, side: int = 0) -> Bools:
-        """The choices of the seat ``side`` on the tables ``which`` (all if None): bool (len(which), choices)."""
+        """The choices of the seat ``side`` on the tables ``which`` (all if None): bool (len(which), choices); ValueError for a Box."""
         which = np.arange(self.n) if which is None else which
         actions, balls = self.actions[side], (self.positions, self.on_table, self.game)
-        assert isinstance(actions, Choices)  # a box has no masks
+        if not isinstance(actions, Choices):
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
         out = np.empty((len(which), actions.choices), np.bool_)
         if isinstance(actions, Menu):
             menu_masks(which, *balls, actions.speeds, self.rules.rule_set.code, out)
