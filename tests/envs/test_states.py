@@ -112,8 +112,6 @@ def test_the_state_of_a_respotted_black_that_the_frame_began_without_is_taken(se
 
 
 # What a call is given is left as it is, neither written into, repaired nor kept
-
-
 Z = (0.0, 0.0, 0.0)
 
 
