@@ -107,7 +107,7 @@ def test_without_stable_baselines_one_line_says_how_to_get_it():
 def test_attributes():
     env = SnookerVecEnv(2)
     assert env.get_attr("num_envs") == [2, 2] and env.has_attr("options") and not env.has_attr("no_such")
-    assert not env.has_attr("last_shot")
+    assert not env.has_attr("last_shot") and env.metadata["render_fps"] == 1
     env.seed(3)
     env.reset()
     assert env.get_attr("np_random_seed", [1]) == [4]
