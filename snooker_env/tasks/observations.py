@@ -1,14 +1,15 @@
 """What does the agent observe? The balls, or the pots, and the state of the game, as float32 arrays."""
 
+from collections import namedtuple
 from math import acos, hypot, log10, pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
 from .._lib.check import choice, refuse
 from .._lib.jit import kernel
-from .._lib.types import Bools, Floats, Masks, Observation, ObservationKind, Singles
+from .._lib.types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
@@ -65,14 +66,9 @@ STROKE_SIZE = len(STROKE_ENTRIES)
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
-class View(NamedTuple):
-    """How visits are observed."""
-
-    pots: bool  # whether pots are, in place of the balls
-    spread: Spread  # of the player, at ``SHOWN_SPEED``
-    rails: Floats  # as in a cue's row
-
-
+View = namedtuple("View", "pots spread rails")
+"""How visits are observed: whether pots are, in place of the balls; the player's ``Spread`` at ``SHOWN_SPEED``; rails as in a
+cue's row."""
 FLAT = View(False, Spread(1.0), np.empty(0))  # the balls
 
 
