@@ -64,12 +64,12 @@ def test_a_seed_at_the_start_is_as_one_given_later():
     at_once, later, other = SnookerVecEnv(5, seed=3), SnookerVecEnv(5), SnookerVecEnv(5, seed=np.int64(4))
     later.seed(3)
     first = at_once.reset()
-    assert np.array_same(first, later.reset()) and np.array_same(first[1:], other.reset()[:4])
+    assert np.array_equal(first, later.reset()) and np.array_equal(first[1:], other.reset()[:4])
     assert at_once.tables.np_random_seed == (3, 4, 5, 6, 7)
     a = np.zeros((5, 4), np.float32)
-    assert all(np.array_same(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
-    assert not np.array_same(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
-    assert not np.array_same(at_once.reset(), first)
+    assert all(np.array_equal(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
+    assert not np.array_equal(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
+    assert not np.array_equal(at_once.reset(), first)
 
 
 @pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
