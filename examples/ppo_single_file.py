@@ -4,7 +4,7 @@ NumPy and PyTorch.
     python -m examples.ppo_single_file --steps 300000 --out runs/single.npz
     python -m agents.evaluate --agent runs/single.npz
 
-The masks come from ``envs.call("action_masks")``. With ``autoreset_mode="SameStep"``, the observation after the end
+The masks come from ``envs.unwrapped.action_masks()``. With ``autoreset_mode="SameStep"``, the observation after the end
 of a visit (one turn at the table) is the first one of the next visit. Every step is then a shot, and only the value
 after the end must be left out.
 """
@@ -127,7 +127,7 @@ def main(argv=None):
         # the rollout
         for t in range(STEPS):
             seen[t] = torch.from_numpy(observation)
-            masks[t] = torch.from_numpy(np.stack(envs.unwrapped.call("action_masks")))
+            masks[t] = torch.from_numpy(envs.unwrapped.action_masks())
             with torch.no_grad():
                 policy = agent.policy(seen[t], masks[t])
                 actions[t] = policy.sample()

@@ -3,7 +3,7 @@
 ``entry`` compiles a kernel that Python calls, and keeps its machine code on disk as the package keeps its
 own. ``kernel`` compiles an inner kernel, which only kernels can call. Both use strict IEEE arithmetic and
 release the GIL. In a mask of balls, bit i stands for ball i. The functions ``balls_on``, ``bits``,
-``clear_segment``, ``execute_stroke``, ``find_pots``, ``line_of`` and ``window`` are inner kernels: call them from
+``clear_segment``, ``execute_stroke``, ``find_pots`` and ``window`` are inner kernels: call them from
 an ``entry`` of your own."""
 
 from ._lib.jit import entry, kernel
@@ -21,14 +21,12 @@ from .game.pots import (
     find_pots,
     window,
 )
-from .tasks.lines import LINE_ROWS, line_of
 from .tasks.noise import execute_stroke
 
 __all__ = [
     "COS_CUT",
     "GHOST_X",
     "GHOST_Y",
-    "LINE_ROWS",
     "POT_BALL",
     "POT_COLUMNS",
     "POT_POCKET",
@@ -40,6 +38,5 @@ __all__ = [
     "execute_stroke",
     "find_pots",
     "kernel",
-    "line_of",
     "window",
 ]

@@ -84,7 +84,7 @@ class SnookerVecEnv(VecEnv):
         known = (*self.tables.tables.reals, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
-        self._actions: Any = None
+        self.metadata, self._actions = self.tables.metadata, None
         # rewards and steps so far: no state of a table holds them, save them with it
         self.episode_returns: Floats = np.zeros(num_envs)
         self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
@@ -146,16 +146,10 @@ class SnookerVecEnv(VecEnv):
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Read what all tables share, or what each has, as ``points``; AttributeError if there is none."""
-        if attr_name in ("observation_space", "action_space"):  # of one table
-            return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
-        if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
-            return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
-        try:
-            each = self.tables.get_attr(attr_name)
-        except ValueError as error:  # not a name of one table: SB3's ``has_attr`` expects this error
-            raise AttributeError(str(error)) from None
-        return [each[k] for k in self._get_indices(indices)]
+        """Read what all tables share, or "np_random" or "np_random_seed" of each; AttributeError if there is none."""
+        name = f"single_{attr_name}" if attr_name in ("observation_space", "action_space") else attr_name
+        value, rows = getattr(self.tables, name), self._get_indices(indices)
+        return [value[k] if name in ("np_random", "np_random_seed") else value for k in rows]
 
     def set_attr(self, attr_name: str, value: object, indices: object = None) -> None:
         """Refuse with AttributeError: the tables share everything. Make another ``SnookerVecEnv`` instead."""
@@ -180,8 +174,7 @@ _AWAY = -1e8  # the score of a stroke that is not there
 
 
 class _StrokesNet(torch.nn.Module):
-    """Reads ``observation="strokes"``, (b, K * C + S) float32: each stroke alike, with the state, by two layers; the position
-    from what they made of all strokes that are there, their mean and their largest, and from the state."""
+    """Reads ``observation="strokes"``, (b, K * C + S) float32: each stroke alike with the state, then all that are there."""
 
     def __init__(self, choices: int, size: int):
         super().__init__()
@@ -204,9 +197,9 @@ class _StrokesNet(torch.nn.Module):
         first = torch.tanh(self.of_stroke(strokes) + self.of_state(state)[:, None])
         return torch.tanh(self.second(first)), strokes[..., 0] > 0.5, state
 
-    def scores(self, made: torch.Tensor) -> torch.Tensor:
-        """The scores (b, K) of strokes."""
-        return self.score(made)[..., 0]
+    def logits(self, made: torch.Tensor, there: torch.Tensor) -> torch.Tensor:
+        """The scores (b, K) of the strokes that are there."""
+        return torch.where(there, self.score(made)[..., 0], _AWAY)
 
     def judge(self, made: torch.Tensor, there: torch.Tensor, state: torch.Tensor) -> torch.Tensor:
         """The features of positions (b, HIDDEN)."""
@@ -218,12 +211,11 @@ class _StrokesNet(torch.nn.Module):
     def forward(self, features: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """Logits of the strokes (b, K), and the features of positions (b, HIDDEN)."""
         made, there, state = self.read(features)
-        return torch.where(there, self.scores(made), _AWAY), self.judge(made, there, state)
+        return self.logits(made, there), self.judge(made, there, state)
 
     def forward_actor(self, features: torch.Tensor) -> torch.Tensor:
         """The logits alone."""
-        made, there, _ = self.read(features)
-        return torch.where(there, self.scores(made), _AWAY)
+        return self.logits(*self.read(features)[:2])
 
     def forward_critic(self, features: torch.Tensor) -> torch.Tensor:
         """The features of positions alone."""
@@ -279,7 +271,7 @@ class _StrokesQ(QNetwork):
 
     def forward(self, obs: Any) -> torch.Tensor:
         net = self.q_net
-        return net.scores(net.read(self.extract_features(obs, self.features_extractor))[0])
+        return net.score(net.read(self.extract_features(obs, self.features_extractor))[0])[..., 0]
 
 
 class StrokesQPolicy(DQNPolicy):

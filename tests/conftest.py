@@ -2,6 +2,7 @@
 same in every run."""
 
 import os
+import warnings
 
 import pytest
 from hypothesis import settings
@@ -23,6 +24,14 @@ def pytest_sessionstart(session):
         env = SnookerEnv(layout="random:1")
         env.reset(seed=0)
         env.step([0.0, 0.0, 0.0, 0.0])
+
+
+@pytest.fixture
+def strict():
+    """Every warning is an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        yield
 
 
 @pytest.fixture

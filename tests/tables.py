@@ -1,11 +1,8 @@
 """How does a test of the environment set up a table, strike, and compare what comes back bit for bit?"""
 
-import copy
 import json
-import pickle
 
 import numpy as np
-import pytest
 
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
@@ -16,10 +13,6 @@ from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
 INFO = {"points": float, "break": float, "foul": bool, "seconds": float}
 INFO |= dict.fromkeys(("penalty", "pots", "fouls", "first_ball", "ball_on", "events"), int)
-COPIES = [
-    pytest.param(copy.deepcopy, id="deepcopy"),
-    pytest.param(lambda env: pickle.loads(pickle.dumps(env)), id="pickle"),
-]
 PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 """Red 1 can be potted along the target line, red 2 is out of the way."""
 

@@ -17,7 +17,6 @@ from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
 from snooker_env.players.tactician import Tactician
-from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frames import Asked, Frames, Seat
 from snooker_env.tasks.threads import Threads
 
@@ -121,7 +120,7 @@ def play_frames(rules, seed, many, act, other, threads):
             for whole, part in zip(parts, said.parts, strict=True):
                 whole[who] = part
         asked: Asked = parts  # type: ignore[assignment]
-        tables.turn(lambda which, b, asked=asked: carry_out(tables, which, asked, b, 0), out, crew, going)
+        tables.turn(lambda which, b, asked=asked: tables.carry_out(which, asked, b, 0), out, crew, going)
         step += 1
     return tables
 

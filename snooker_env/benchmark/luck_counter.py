@@ -13,7 +13,6 @@ from .._lib.types import Bools, Floats, Ints, Singles
 from ..envs.vector import SnookerVectorEnv
 from ..planning.positions import of_tables
 from ..players.luck import EXPECTED, Expected, Turn, luck_of, mean_of_starts, value_of
-from ..tasks.carry_out import carry_out
 from ..tasks.frames import OPPONENT, Asked, Frames, Opponent
 from ..tasks.tables import Crew, StepOutput, Tables
 from ..tasks.threads import Threads
@@ -87,8 +86,8 @@ class WatchedOpponent:
             assert isinstance(copies, Frames)
             values, places, nominated, decisions, declared = asked
             theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
-            ours = self._luck._crew
-            copies.turn(lambda some, buffers: carry_out(copies, some, theirs, buffers, OPPONENT), out, ours)
+            carry_out = lambda some, buffers: copies.carry_out(some, theirs, buffers, OPPONENT)  # noqa: E731
+            copies.turn(carry_out, out, self._luck._crew)
 
         self._luck.add(which, turn)
         return asked

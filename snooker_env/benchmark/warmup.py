@@ -30,7 +30,7 @@ from ..simulation import simulate
 from ..simulation.impacts import collide_balls, collide_cushion, strike
 from ..tasks.noise import Spread
 from ..tasks.options import Options
-from ..tasks.pot_chance import pot_chances
+from ..tasks.pot_chance import chance_at
 
 
 class _Still:
@@ -99,8 +99,6 @@ def _play_environments() -> tuple[SnookerEnv, SnookerEnv]:
     match = SnookerEnv(task="match", opponent="ghost_ball", says=["concede"])
     match.reset(seed=0)
     match.step([0.0] * 4 + [-1.0])
-    tables: Any = match.tables
-    tables.info_of(0, None)
     return env, match
 
 
@@ -126,7 +124,7 @@ def _plan(env: SnookerEnv, match: SnookerEnv) -> None:
     obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
     room_for(np.zeros(5), at, Options(cue="real").rules)
     prospects_of(at, Spread(1e-3))
-    pot_chances(np.ones(1), np.ones(1), Spread(1e-3))
+    chance_at(1.0, 1.0, Spread(1e-3))
     player("ghost_ball").at({"task": "frame"}).play(both, [0])
     player(_Still(task="frame", says=["decision"])).at({"task": "frame"}).play(both, [0])
     for name in ("search_30", "planner_30", "stroke_value"):

@@ -1,8 +1,7 @@
 """Which tables does a reset begin, from where, and with which seeds?"""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,11 +11,14 @@ from ..game.balls import mask_of_present, points_available
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.frames import Frames
+from ..tasks.states import FrameState, State
 from ..tasks.tables import Tables
 
 STARTS = ("state", "states", "position", "positions")  # reset options that say where an episode starts
 ONE = ("state", "position", "breaker")
 MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
+Start: TypeAlias = State | FrameState | tuple[Floats, Bools, Ints]
+"""The start of an episode that is not dealt: a valid state, or the arrays of a valid position."""
 
 
 def seeds_of(seed: object, n: int) -> list[int | None]:
@@ -72,32 +74,27 @@ def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
     return {"breakers": np.full(n, integer(field, breaker, 0, 1), np.int64)}
 
 
-@dataclass(frozen=True)
-class Start:
-    """The start of an episode that is not dealt: a valid state, or the arrays of a valid position."""
-
-    state: Any = None  # ``states.State`` or ``states.FrameState``
-    arrays: tuple[Floats, Bools, Ints] | None = None  # ``planning.Position.arrays``
-
-    @classmethod
-    def of(cls, state: Any, tables: Tables, rng: np.random.Generator, *, to_play: bool = False) -> "Start":
-        """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
-        both = isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
-        either = {"either": True} if both else {}  # the caller plays both sides
-        return cls(state=tables.check_state(state, rng, to_play=to_play, **either))
-
-    def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
-        """Put it on table k; returns the state of its NumPy generator, None for a position."""
-        if self.arrays is not None:
-            tables.set_position(k, *self.arrays)
-            return None
-        tables.set_state(k, self.state)
-        return self.state.rng
+def begin_at(
+    start: Start | None, tables: Tables, k: int, rng: np.random.Generator, *, seeded: bool, keyed: bool
+) -> bool:
+    """Begin on table k with ``start``, if not None, and its stream, or a key from ``rng`` -> whether ``rng`` took a state."""
+    if isinstance(start, State | FrameState):
+        tables.set_state(k, start)
+        if not seeded:
+            rng.bit_generator.state = start.rng
+            return True
+    elif start is not None:
+        tables.set_position(k, *start)
+    if seeded or not keyed:
+        tables.seed(k, rng)
+    if type(start) is tuple:  # a position, on a table that is drawn
+        tables.draw_conditions(np.array([k]))
+    return False
 
 
 def starts_of(
     options: dict[str, Any], tables: Tables, generator: np.random.Generator, *, to_play: bool = True
-) -> list[Start] | None:
+) -> Sequence[Start] | None:
     """The validated start of each table; None to deal them."""
     keys = [key for key in STARTS if key in options]
     if not keys:
@@ -107,15 +104,15 @@ def starts_of(
     (key,), n = keys, tables.n
     value, field = options[key], f'options["{key}"]'
     if key == "state":
-        return [Start.of(value, tables, generator, to_play=to_play)] * n
+        return [tables.check_state(value, generator, to_play=to_play)] * n
     if key == "position":
-        return [Start(arrays=_position(field, value, tables))] * n
+        return [_position(field, value, tables)] * n
     if not isinstance(value, list | tuple) or len(value) != n:
         length = f" of {len(value)}" if isinstance(value, list | tuple) else ""
         raise refuse_what(field, f"{type(value).__name__}{length}", f"must be a list of {n} {key}")
     if key == "states":
-        return [Start.of(state, tables, generator, to_play=to_play) for state in value]
-    return [Start(arrays=_position(f"{field}[{k}]", one, tables)) for k, one in enumerate(value)]
+        return [tables.check_state(state, generator, to_play=to_play) for state in value]
+    return [_position(f"{field}[{k}]", one, tables) for k, one in enumerate(value)]
 
 
 def _position(field, position, tables):

@@ -10,19 +10,17 @@ from gymnasium.utils import seeding
 from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
-from .._lib.check import choice
 from .._lib.types import Action, Observation, RenderMode
-from ..game.frame import Frame
 from ..game.frame_columns import STRIKER, STROKES
 from ..simulation.shot import Shot
 from ..tasks import observations
-from ..tasks.discrete_actions import Choices, require_choices
+from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames
 from ..tasks.options import Options, observation_space_of
 from ..tasks.tables import Crew
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
-from .pictures import FPS, MODES, SIZE, Pictures
+from .pictures import MODES, SIZE, Pictures
 from .seats import match_options, match_tables
 
 PLAYERS: tuple[str, ...] = ("player_0", "player_1")
@@ -35,26 +33,9 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     ``agent_selection`` stays as long as the player scores. Actions: ``Box(-1, 1, (7,), float32)``, speed, side, top,
     aim, place in the D (two numbers), decision after a foul, or more or fewer with the options; or ``Discrete(540)``,
     with ``action_mask(agent)``. Observations and infos are those of a frame of ``SnookerEnv`` as each player sees it;
-    the rewards of both sum to zero. ``reset(options=...)`` takes "state", "position" or "breaker" (0 or 1).
+    the rewards of both sum to zero. ``reset(options=...)`` takes "state", "position" or "breaker" (0 or 1)."""
 
-    Parameters
-    ----------
-    options, seats, render_mode, render_size, **keywords
-        As in ``match_env``.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> env = sn.match_env(noise="club", action="discrete")
-    >>> env.reset(seed=1)
-    >>> for agent in env.agent_iter(max_iter=3):
-    ...     observation, reward, terminated, truncated, info = env.last()
-    ...     env.step(None if terminated or truncated else int(info["action_mask"].argmax()))
-    >>> env.strokes
-    3
-    """
-
-    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": 1}  # noqa: RUF012
     metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
     tables: Frames
 
@@ -69,12 +50,10 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     ):
         super().__init__()
         self.options = match_options(options, keywords)
-        if render_mode is not None:
-            choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []
-        acts = list(zip(PLAYERS, (seat.actions for seat in self.tables.seats), strict=True))
+        acts = list(zip(PLAYERS, self.tables.actions, strict=True))
         self.observation_spaces = {name: observation_space_of(self.options, its) for name, its in acts}
         self.action_spaces = {name: copy.deepcopy(its.space) for name, its in acts}  # each with its generator
         self.np_random, _ = seeding.np_random()
@@ -96,11 +75,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self._selected = agent
 
     @property
-    def frame(self) -> Frame:
-        """The current ``snooker_env.game.frame.Frame``."""
-        return self.tables.frame(0)
-
-    @property
     def last_shot(self) -> Shot | None:
         """The ``Shot`` of the last turn, with its path if a history is kept; None if it had no stroke."""
         return self._record.last_shot if self._last is not None else None
@@ -120,21 +94,16 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def observe(self, agent: str) -> Observation:
         """Return the current observation of a player, in new arrays."""
-        turn = agent == self.agent_selection  # an error before reset()
-        side = PLAYERS.index(agent)
+        _, side = self.agent_selection, PLAYERS.index(agent)  # an error before reset()
         rows = self.tables.observe(np.zeros(1, np.int64), side)
-        masks = self._mask(side, turn) if self.options.rules.observation == "masked" else None
+        masks = self.action_mask(agent) if self.options.rules.observation == "masked" else None
         return observations.arrange(self.options.rules.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
-        side = PLAYERS.index(agent)
-        require_choices(self.tables.seats[side].actions)
-        return self._mask(side, agent == self.agent_selection)
-
-    def _mask(self, side, turn):
-        available = self.tables.action_masks(side=side)[0]
-        return (available & (turn and not self.tables.are_over()[0])).astype(np.int8)
+        turn = agent == self.agent_selection and not self.tables.are_over()[0]
+        available = self.tables.action_masks(side=PLAYERS.index(agent))[0]
+        return (available & turn).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
@@ -162,7 +131,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def _account(self, striker=None):
         """Whose turn it is, and the infos; ``striker``: who has just had one."""
-        frame = self.frame
+        frame = self.tables.frame(0)
         over = frame.phase == "over"
         self.terminations = dict.fromkeys(PLAYERS, over)
         self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.are_stopped_short()[0]) and not over)
@@ -182,9 +151,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
             self._was_dead_step(action)
             return
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
-        a = self.tables.seats[striker].actions.check(action)
+        a = self.tables.actions[striker].check(action)
         self._pictures.require_display()
-        self._record.begin_step()
         crew = Crew(self._record.buffers, self._watch)
         played = bool(self.tables.turns([np.array([a])] * 2, out, crew)[0])
         self._last = out if played else None
@@ -198,6 +166,6 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         """The keys of ``SnookerEnv``'s info: of the last stroke, and of the frame as the player sees it."""
         info = self.tables.info_of(player, self._last)
         info["opponent_strokes"] = int(self._last is not None and striker is not None and striker != player)
-        if isinstance(self.tables.seats[player].actions, Choices):
+        if isinstance(self.tables.actions[player], Choices):
             info["action_mask"] = self.action_mask(PLAYERS[player])
         return info

@@ -4,16 +4,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
-from gymnasium.vector.utils import batch_space
 
-from .._lib.check import refuse, refuse_what
+from .._lib.check import refuse
 from .._lib.types import Bools, Floats, Ints, Observation
 from ..game.frame_columns import STRIKER
-from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames
-from ..tasks.options import Options, observation_space_of
+from ..tasks.options import Options
 from ..tasks.tables import Tables
 from .seats import match_options, match_tables
 from .vector import SnookerVectorEnv
@@ -62,15 +59,9 @@ class MatchVectorEnv(SnookerVectorEnv):
                 raise refuse(name, keywords[name], words)
         self._differences = seats
         super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **keywords)
-        one, other = (seat.actions.space for seat in self.tables.seats)
-        self._alike = one == other
-        if self.options.rules.observation == "masked" and not self._alike:
-            raise refuse("seats", seats, 'must give both players the same choices with observation="masked"')
-        self.single_action_space: spaces.Space[Any] = one if self._alike else spaces.Tuple((one, other))
-        self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, self.num_envs)
-        seen = observation_space_of(self.options, self.tables.seats[0].actions)
-        self.single_observation_space: spaces.Space[Any] = seen
-        self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, self.num_envs)
+        one, other = (actions.space for actions in self.tables.actions)
+        if one != other:
+            raise refuse("seats", seats, "must give both players the same actions; match_env takes others")
 
     _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 
@@ -90,19 +81,13 @@ class MatchVectorEnv(SnookerVectorEnv):
     def step(self, actions: Any) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one turn on each table, see ``SnookerVectorEnv.step``.
 
-        ``actions`` are the strikers'; with seats whose actions differ two such arrays, one for each player.
-        Observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
+        ``actions`` are the strikers'; observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
         tables = self.tables
-        if not self._alike and not (isinstance(actions, tuple | list) and len(actions) == 2):
-            words = "must be two arrays, one for each player: their seats differ"
-            raise refuse_what("actions", f"a {type(actions).__name__}", words)
-        each = [actions, actions] if self._alike else actions
-        pairs = zip(tables.seats, each, strict=True)
-        checked = [seat.actions.check_many(a, self.num_envs) for seat, a in pairs]
+        told = tables.actions[0].check_many(actions, self.num_envs)
         self._require_begun()
         written = tables.output()
         with self._playing():
-            tables.turns(checked, written, self._crew)
+            tables.turns([told, told], written, self._crew)
         infos = tables.infos(written.reals, written.counts) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
         return self._arrange(written), rewards, written.terminated, written.truncated, infos
@@ -117,13 +102,6 @@ class MatchVectorEnv(SnookerVectorEnv):
             written.masks[:] = self.action_masks()
             written.masks[(self.strikers != player) | self.tables.are_over()] = False
         return super()._arrange(written)
-
-    def action_masks(self) -> Bools:
-        """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
-        if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
-            words = 'must be "discrete" or "strokes" for both players: a Box has no masks'
-            raise refuse("action", self.options.action, words)
-        return self.tables.action_masks()
 
     def _arrange(self, written: Any) -> Any:
         """The strikers' observations, without a choice where the frame or match has ended."""

@@ -10,15 +10,13 @@ from ..game.balls import BallOn
 from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
-from ..physics.table import Table
 from ..simulation.shot import Shot
 from ..tasks.frames import Frames
-from ..tasks.noise import Noise
 from ..tasks.options import Options
 from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
-from .arguments import Start
+from .arguments import Start, begin_at
 from .pictures import Picture, Pictures
 
 
@@ -30,31 +28,6 @@ class Record:
         self.buffers = ShotBuffers(1, path=full)  # work space in which the strokes are played
         self.strokes: list[Played] = []  # of both players; empty unless ``full``
         self.last_shot: Shot | None = last_shot  # the agent's; with ``full``, that of either player
-        self._before, self._rendered = 0, False
-        self._ended: tuple[list[Played], int] = [], 0
-
-    def begin_episode(self) -> None:
-        """Keep only strokes not rendered yet: some vector environments reset within a step."""
-        self._ended = ([], 0) if self._rendered else (self.strokes, len(self.strokes) - self._before)
-        self.strokes, self.last_shot, self._before, self._rendered = [], None, 0, False
-
-    def begin_step(self) -> None:
-        """The strokes to come are the recent ones."""
-        self._before, self._ended, self._rendered = len(self.strokes), ([], 0), False
-
-    def recent(self) -> list[tuple[list[Played], int]]:
-        """For ``render``: episodes, and how many of their last strokes belong to the last step or reset."""
-        self._rendered = True
-        return [self._ended, (self.strokes, len(self.strokes) - self._before)]
-
-    def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
-        if self.full:
-            played = tables.record(k, buffers, j)
-            self.strokes.append(played)
-            self.last_shot = played.shot
-        elif mine:
-            self.last_shot = tables.shot(k, buffers, j)
 
 
 class OneTable:
@@ -114,16 +87,6 @@ class OneTable:
         """The physical constants of this episode's table, a ``Physics``."""
         return self.tables.physics_of(0)
 
-    @property
-    def table(self) -> Table:
-        """The table, a ``Table``."""
-        return self.options.rules.table
-
-    @property
-    def noise(self) -> Noise:
-        """The execution noise, a ``Noise``."""
-        return self.options.rules.noise
-
     # strokes
 
     @property
@@ -148,12 +111,17 @@ class OneTable:
             self._record = Record(full=full, last_shot=self._record.last_shot)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
-        """Called after each stroke of either player."""
-        self._record.saw(self.tables, k, buffers, j, mine)
+        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
+        record = self._record
+        if record.full:
+            record.strokes.append(self.tables.record(k, buffers, j))
+            record.last_shot = record.strokes[-1].shot
+        elif mine:
+            record.last_shot = self.tables.shot(k, buffers, j)
 
     def render(self) -> Picture:
-        """Return a ``Picture``, with the paths of the last shot; recorders get the motion of the strokes."""
-        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
+        """Return a ``Picture``, with the paths of the last shot."""
+        return self._pictures.render(self.tables, 0, self._record.strokes)
 
     def _show(self, *, played: bool = False) -> None:
         self._pictures.show(self.tables, self._record.strokes, played=played)
@@ -170,21 +138,14 @@ class OneTable:
 
     def set_state(self, state: dict[str, Any]) -> None:
         """Restore a result of ``get_state``; ValueError if it is invalid: then nothing has changed."""
-        self._begin_at(Start.of(state, self.tables, self.np_random), seeded=False)
+        self._begin_at(self.tables.check_state(state, self.np_random), seeded=False)
         self._begin()
 
     def _begin(self) -> None:
         """A new episode begins on the table."""
-        self._record.begin_episode()
+        self._record.strokes, self._record.last_shot = [], None
 
     def _begin_at(self, start: Start | None, *, seeded: bool) -> None:
-        """Take up the start; the random stream is that of its state, unless there is a seed."""
-        rng = None if start is None else start.take(self.tables, 0)
-        if rng is not None and not seeded:
-            # Gymnasium's number for "not from a seed"
-            self.np_random.bit_generator.state, self._np_random_seed = rng, -1
-        elif seeded or not self._keyed:
-            self.tables.seed(0, self.np_random)
-        if start is not None and rng is None:  # a position, on a table that is drawn
-            self.tables.draw_conditions(np.zeros(1, np.int64))
+        if begin_at(start, self.tables, 0, self.np_random, seeded=seeded, keyed=self._keyed):
+            self._np_random_seed = -1  # Gymnasium's number for "not from a seed"
         self._keyed = True

@@ -7,16 +7,14 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import choice
 from .._lib.types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
-from ..tasks.discrete_actions import require_choices
 from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
-from .pictures import FPS, MODES, SIZE, Pictures
+from .pictures import MODES, SIZE, Pictures
 from .seats import game_of, tables_of
 
 
@@ -27,18 +25,13 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     * **Task.** "visit" (default): a break until the first stroke that pots nothing, a foul or a clearance; "frame",
       against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
-    * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, 0.8 to 4.6 m/s; side and top, tip offsets up to 0.2 R right
-      and 0.4 R up; the pot, 0 the widest, the further from 0 the narrower, its aim solved. All 0: the widest pot, no spin.
-      With ``aim="absolute"``: 0.2 to 7 m/s; offsets up to 0.5 R, in a disc; up to 180 deg anticlockwise from +x; with
-      "target" 3 deg left (right: -1) of the line of the best pot. Longer with ``elevation``, ``placement`` and ``says``.
-      Values up to 1e-6 outside are clipped, as rounding; others are refused. ``action="discrete"``: ``Discrete(540)``
-      or more, ((pot * 9 + speed) * 3 + side) * 5 + top, its aim solved for; ``action_masks()`` are the available ones.
-    * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: for the four widest pots chance, log10 of it / 2, cut,
-      tolerance, value, place of the ball, direction and distance of the ghost ball, place of the pocket; the cue ball; the
-      state. Of a frame, or "flat", ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and yellow to black x / 0.889 m,
-      y / 1.7845 m, on the table, value / 7, ball on; then reds / 15, the ball on (8, one-hot), in hand, break / 155. A
-      frame appends 19 numbers, a miss rule 66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``.
-      "masked", of discrete actions: ``Dict(observations, action_mask)``.
+    * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, side, top and the pot, whose aim is solved. All 0: the widest
+      pot, no spin. Longer with ``elevation``, ``placement`` and ``says``. Values up to 1e-6 outside are clipped, as
+      rounding; others are refused. ``action="discrete"``: ``Discrete(540)`` or more; ``action_masks()`` are the available.
+    * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: the four widest pots, the cue ball, the state. Of a
+      frame, or "flat", ``Box(-1.1, 1.1, (121,), float32)``: all balls, the state; a frame appends 19 numbers, a miss rule
+      66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``. "masked", of discrete actions:
+      ``Dict(observations, action_mask)``.
     * **Reward.** "points" (default): of the stroke, of a frame the growth of the lead; or of a visit
       "points_and_fouls", "pots", "legal", of a frame "win", of a match "frames".
     * **Episode.** A frame is truncated after ``max_strokes`` strokes of both players; ``one_stroke=True``: it ends
@@ -64,7 +57,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     >>> observation, reward, terminated, truncated, info = env.step([0.2, 0.0, 0.0, 0.0])
     """
 
-    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": 1}  # noqa: RUF012
 
     def __init__(
         self,
@@ -78,8 +71,6 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         self.tables = tables_of(self.options, opponent, 1)
         self.action_space: spaces.Space[Any] = self.options.rules.actions.space
         self.observation_space: spaces.Space[Any] = observation_space_of(self.options)
-        if render_mode is not None:
-            choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         names = ("Agent",) if self.options.task == "visit" else ("Agent", "Opponent")
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
@@ -116,7 +107,6 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
             raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         self._pictures.require_display()
         out = tables.output()
-        self._record.begin_step()
         try:
             tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
         except BaseException:
@@ -127,7 +117,6 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
-        require_choices(self.options.rules.actions)
         return self.tables.action_masks()[0]
 
     def _arrange(self, out: StepOutput) -> Observation:

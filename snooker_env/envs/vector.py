@@ -2,7 +2,6 @@
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
 
-import copy
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Literal
@@ -15,29 +14,21 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike
 
-from .._lib.check import choice, integer, refuse
+from .._lib.check import integer
 from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
-from ..tasks.discrete_actions import require_choices
-from ..tasks.options import NEVER, Options
+from ..tasks.options import NEVER, Options, observation_space_of
 from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
-from .arguments import MANY, breakers_of, known_options, mask_of, seeds_of, starts_of
+from .arguments import MANY, begin_at, breakers_of, known_options, mask_of, seeds_of, starts_of
 from .pictures import SIZE, Picture, Pictures
 from .seats import game_of, tables_of
 from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
-_ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
-NOT_OF_A_TABLE: dict[str, str] = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE)
-NOT_OF_A_TABLE |= {name: name for name in ("step", "render", "close")}
-NOT_OF_A_TABLE |= {"reset": 'reset(options={"reset_mask": ...})'}
-NOT_OF_A_TABLE |= {"set_state": 'reset(options={"states": ...})'}
-NOT_OF_A_TABLE |= {"get_wrapper_attr": "call", "set_wrapper_attr": "another environment"}
-NOT_OF_A_TABLE |= {"spec": "the attribute spec", "unwrapped": "this environment"}
-"""Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
+_GENERATOR = np.random.default_rng(0)  # of the kind whose states a reset takes; no number is drawn from it
 
 
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
@@ -99,21 +90,16 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
-        if render_mode is not None:
-            choice("render_mode", render_mode, PICTURES)
         self.render_mode = render_mode
         self.options, opponent = self._game_of(options, keywords)
         limit = NEVER if max_episode_steps is None else max_episode_steps
         self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
-        # what ``call`` shows of a table; its own table, without an opponent, is never played on
-        alone = self.options.but(opponent="none")
-        self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
-        self._one.options = self.options
-        self.single_action_space: spaces.Space[Any] = self._one.action_space
-        self.single_observation_space: spaces.Space[Any] = self._one.observation_space
+        actions = self.tables.actions[0]
+        self.single_action_space: spaces.Space[Any] = actions.space
+        self.single_observation_space: spaces.Space[Any] = observation_space_of(self.options, actions)
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, n)
         self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, n)
-        self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, modes=PICTURES)
         self._generators: list[Any] = [None] * n
         self._generator_seeds = [-1] * n
         # has the table's stream a key, has it an episode, and has that ended?
@@ -138,7 +124,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         for invalid options, ResetNeeded if a table outside the mask has never been reset."""
         options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
-        starts, breakers = starts_of(options, tables, self._one.np_random), breakers_of(options, tables)
+        starts, breakers = starts_of(options, tables, _GENERATOR), breakers_of(options, tables)
         if not (wanted | self._begun).all():
             k = int(np.argmin(wanted | self._begun))
             raise gymnasium.error.ResetNeeded(f"table {k} has no visit yet: reset all tables first")
@@ -148,13 +134,9 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         for k, made in zip(new, [seeding.np_random(seeds[k]) for k in new], strict=True):
             self._generators[k], self._generator_seeds[k] = made
         for k in rows:
-            rng = None if starts is None else starts[k].take(tables, k)
-            if rng is not None and seeds[k] is None:
-                self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
-            elif seeds[k] is not None or not self._keyed[k]:
-                tables.seed(k, self._generators[k])
-            if starts is not None and rng is None:  # a position, on a table that is drawn
-                tables.draw_conditions(np.array([k]))
+            start, seeded = None if starts is None else starts[k], seeds[k] is not None
+            if begin_at(start, tables, k, self._generators[k], seeded=seeded, keyed=bool(self._keyed[k])):
+                self._generator_seeds[k] = -1
             self._keyed[k] = True
         dealt = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
         written = tables.output()
@@ -196,12 +178,12 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def action_masks(self) -> Bools:
         """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
-        require_choices(self.options.rules.actions)
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table, as ``SnookerEnv.render``; a recorder gets all motion at once."""
-        return self._pictures.render_all(self.tables, self._recent)
+        """Return a picture of each table, as ``SnookerEnv.render``."""
+        each = enumerate(self._recent)
+        return tuple(self._pictures.render(self.tables, k, strokes) for k, strokes in each)
 
     def close_extras(self, **kwargs: object) -> None:
         """End the threads; called by ``close``."""
@@ -233,28 +215,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         each = enumerate(self.np_random)
         return [self.tables.get_state(k) | {"rng": one.bit_generator.state} for k, one in each]
 
-    def call(self, name: str, *args: object, **kwargs: object) -> tuple[Any, ...]:
-        """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
-
-        ValueError if the name does not belong to one table, AttributeError if there is none."""
-        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
-            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
-            words = "must be something public that a table has for itself"
-            raise refuse("name", name, words + (f"; use {instead}" if instead else ""))
-        each = []
-        for k, generator in enumerate(self.np_random):
-            one = copy.copy(self._one)
-            one.tables, one._np_random = self.tables.take(slice(k, k + 1)), generator
-            one._np_random_seed = self._generator_seeds[k]
-            each.append(getattr(one, name))
-        return tuple(one(*args, **kwargs) if callable(one) else one for one in each)
-
-    get_attr = call
-
-    def set_attr(self, name: str, values: object) -> None:
-        """Refuse with AttributeError: the tables share everything. Make another environment instead."""
-        raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
-
     # parts of reset and step
 
     def _require_begun(self) -> None:
@@ -281,10 +241,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        each = observations.arrange(self.options.rules.observation, out.last_observations, out.last_masks)
+        last, reals, counts = out.last
+        each = observations.arrange(self.options.rules.observation, last, out.last_masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
-        info = self.tables.infos(out.last_reals, out.last_counts, done)
+        info = self.tables.infos(reals, counts, done)
         return {"final_obs": final, "_final_obs": done.copy(), "final_info": info, "_final_info": done.copy()}

@@ -12,7 +12,7 @@ The caller assigns a value to each afterstate, for example by the rule of thumb 
 steps and returns the best strokes by a judge, of visits (``VisitJudge``) or of frames (``FrameJudge``).
 """
 
-from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
+from ..tasks.pot_chance import RULE_OF_THUMB, SURE
 from ..tasks.threads import processors
 from .aims import pot_aim
 from .frame_judge import FrameJudge

@@ -30,8 +30,7 @@ from ..tasks.kernel_arrays import CueLaw
 from ..tasks.lines import EASY, aim_at_ball, break_off, end_red_of_rack, new_work
 from ..tasks.noise import POT_SPEED, Spread, widen
 from ..tasks.pot_aim import solved_aim
-from ..tasks.pot_chance import chance_of, length_of, raised_spread
-from ..tasks.rule_of_thumb import DISTANT, FOLLOWS
+from ..tasks.pot_chance import DISTANT, FOLLOWS, chance_of, length_of, raised_spread
 from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, wrap_angle
 from .aims import Dynamics, law_of

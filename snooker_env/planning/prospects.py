@@ -14,7 +14,7 @@ from ..geometry import BALL_RADIUS
 from ..physics.cue_room import NO_RAILS
 from ..tasks.discrete_actions import POTS
 from ..tasks.noise import Spread
-from ..tasks.rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
+from ..tasks.pot_chance import RULE_OF_THUMB, points_left, worth_of_pots
 from .positions import Positions
 
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost

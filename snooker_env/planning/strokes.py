@@ -29,13 +29,12 @@ from ..tasks.box_actions import (
     TARGET_SPAN,
     Actions,
 )
-from ..tasks.carry_out import sayings
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.discrete_actions import POTS, SIZE, masks
+from ..tasks.discrete_actions import POTS, SIZE, Choices, masks
+from ..tasks.frames import sayings
 from ..tasks.kernel_arrays import C_END_MASS, pack_cue
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
-from ..tasks.tables import STROKES_ONLY
 from .aims import check_columns
 from .positions import Positions, PositionsLike
 from .stroke_columns import AIM, COLUMNS, ELEVATION, LEAST, MOST, SIDE, SPEED, TOP
@@ -342,5 +341,5 @@ def available(positions: Positions, rails: Floats) -> NDArray[np.bool_]:
     """``action_masks`` with the rails that the cue passes over, ``Rules.rails``."""
     at, cue = positions.as_visits(), pack_cue(Physics(), rails)
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(np.arange(len(at)), at.positions, at.on_table, at.game, STROKES_ONLY, cue, out)
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, Choices().pack(), cue, out)
     return out

@@ -13,7 +13,7 @@ from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
 from ..tasks.noise import Noise, Spread
 from ..tasks.options import Options, Rules
-from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
+from ..tasks.pot_chance import RULE_OF_THUMB, SURE
 from .aims import Dynamics
 from .planner import Planner, options_in
 from .positions import Positions

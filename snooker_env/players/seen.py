@@ -13,9 +13,8 @@ from ..physics.parameters import nominal
 from ..planning import Positions
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import decode
-from ..tasks.carry_out import sayings
 from ..tasks.discrete_actions import Choices
-from ..tasks.frames import Frames
+from ..tasks.frames import Frames, sayings
 from ..tasks.observations import arrange
 from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits

@@ -17,7 +17,7 @@ from ..physics.table import Table
 from ..planning.positions import Positions
 from ..planning.pot_geometry import obstructions, pots
 from ..tasks.noise import LEVELS
-from ..tasks.pot_chance import pot_chances
+from ..tasks.pot_chance import chance_at
 
 MOST = 126  # largest number of lines: from 21 balls to 6 pockets
 
@@ -94,7 +94,7 @@ def _line(which, ghost, aim, barred, places, tolerances, spread):
     why = "" if tolerance or blocked else why
     chance = None
     if spread is not None and tolerance:
-        chance = float(pot_chances(np.array([tolerance]), np.array([far + on]), spread)[0])
+        chance = chance_at(tolerance, far + on, spread)
     aim = atan2(run[1], run[0])
     return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
 

@@ -39,18 +39,13 @@ def tip_on_disc(side, top, max_offset):
 
 
 @kernel
-def place_of(a, options):
-    """The place in the D (x, y) [m] that the two placement components of an action mean."""
+def place_of(a, options, anywhere):
+    """The place (x, y) [m] in the D or, ``anywhere``, on the bed, that the two placement components of an action mean."""
     at = 5 if options[A_ELEVATION] else 4
     x, back = a[at], 0.5 * (a[at + 1] + 1.0)
+    if anywhere:
+        return HALF_WIDTH * x, HALF_LENGTH * a[at + 1]
     return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
-
-
-@kernel
-def place_anywhere_of(a, options):
-    """The place (x, y) [m] that they mean on the whole bed: shares of half its width and length."""
-    at = 5 if options[A_ELEVATION] else 4
-    return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
 @kernel(uses=(aim_along,))
@@ -60,27 +55,21 @@ def _target_line(positions, on_table, on, stroke, law, work):
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
         dx, dy = lines[0, GHOST_X] - positions[0, 0], lines[0, GHOST_Y] - positions[0, 1]
         return swerved_aim(atan2(dy, dx), hypot(dx, dy), stroke, positions, on_table, law, work)
-    find_lines(positions, on_table, on, lines)
+    find_lines(positions, on_table, on, lines, False)
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
-@kernel(uses=(aim_on,))
-def _on_picked_line(a, positions, on_table, on, elevation, law, work):
-    """``shot_of`` of an action that picks a pot or, where there is none, another line."""
-    speed = SLOWEST * exp(0.5 * (a[0] + 1.0) * _RATIO)
-    side, top = tip_on_disc(MOST_SIDE * a[1], MOST_TOP * a[2], law.max_offset)
-    many, pots = list_lines(positions, on_table, on, work.lines)
-    k, stroke = min(int(abs(a[3]) * many), many - 1), (speed, side, top, elevation)
-    aim = aim_on(k, pots, stroke, positions, on_table, on, law, work)
-    return speed, side, top, aim - squirt(side, law.end_mass_ratio), elevation
-
-
-@kernel(uses=(_target_line, _on_picked_line))
+@kernel(uses=(_target_line, aim_on))
 def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0
     if options[A_AIM] == _POT:
-        return _on_picked_line(a, positions, on_table, on, elevation, law, work)
+        speed = SLOWEST * exp(0.5 * (a[0] + 1.0) * _RATIO)
+        side, top = tip_on_disc(MOST_SIDE * a[1], MOST_TOP * a[2], law.max_offset)
+        many, pots = list_lines(positions, on_table, on, work.lines)
+        k, stroke = min(int(abs(a[3]) * many), many - 1), (speed, side, top, elevation)
+        aim = aim_on(k, pots, stroke, positions, on_table, on, law, work)
+        return speed, side, top, aim - squirt(side, law.end_mass_ratio), elevation
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], law.max_offset)
     direction = pi * a[3]
@@ -92,14 +81,14 @@ def shot_of(a, positions, on_table, on, options, law, work):
 
 
 class Actions:
-    """The box action space; docs/environment/specification.md says what its components mean: speed, side,
-    top, aim, then elevation, the place in the D (two), nomination, decision, declaration."""
+    """The box action space: speed, side, top, aim, then elevation, place in the D (two), nomination, decision, declaration."""
 
     aim: str
     elevation: bool
     steepest: float  # the elevation that 1 means [rad]
     placement: bool
     says: tuple[str, ...]  # some of ``SAYS``, in their order
+    declares: bool  # whether the last component is a declaration
     space: spaces.Box
     size: int  # components of an action
 
@@ -117,14 +106,10 @@ class Actions:
                 raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
         self.elevation = self.steepest > 0.0
         self.says = tuple(name for name in SAYS if name in says)
+        self.declares = any(name in self.says for name in DECLARES)
         said = ("nominate" in says) + ("decision" in says) + self.declares
         self.size = 4 + self.elevation + 2 * self.placement + said
         self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
-
-    @property
-    def declares(self) -> bool:
-        """Whether the last component is a declaration."""
-        return any(name in self.says for name in DECLARES)
 
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].

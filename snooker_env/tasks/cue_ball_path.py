@@ -40,8 +40,7 @@ _LONGEST = 60.0  # longest phase that is looked at [s]
 
 @kernel
 def _moment(motion, state, t0, t1, share, x, y, normal, phys):
-    """When in (t0, t1) the cue ball has passed the line through (x, y) with this normal: by share of the chord, then one step
-    of Newton's method."""
+    """When in (t0, t1) the cue ball passes the line through (x, y) with this normal: by share of the chord, then a step of Newton's."""
     t = t0 + (t1 - t0) * share
     (px, py), v, _ = cloth.evaluate(motion, state, 0, t, phys)
     speed = v[0] * normal[0] + v[1] * normal[1]

@@ -46,13 +46,6 @@ def nominated_ball(n, row):
 
 
 @kernel
-def may_nominate(n, row):
-    """Whether a discrete action may nominate ``n`` now: one number for each thing that can be nominated."""
-    ball = nominated_ball(n, row)
-    return n == 0 if ball <= 0 else ball == YELLOW + n - 1
-
-
-@kernel
 def nomination_of(a, options, row):
     """The ball that the action ``a`` nominates: a colour, 0 for a free ball declined, or AUTO."""
     if options[A_NOMINATE] < 0:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._lib.check import refuse, refuse_what
 from .._lib.jit import entry, kernel
 from .._lib.types import Action, Floats
-from ..game.balls import N_BALLS, bits
+from ..game.balls import N_BALLS, YELLOW, bits
 from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS
 from ..geometry import BALL_RADIUS
@@ -100,8 +100,7 @@ def _lacks_room(positions, on_table, rails, ax, ay):
 
 @kernel
 def _without_room(positions, on_table, cue, rows, pots, many, out):
-    """Of the ``many`` lines in ``rows`` (``pots`` or not) clear the choices in ``out`` (SIZE,) whose cue must be steeper than
-    ``STEEPEST``, unless none were left."""
+    """Clear the choices in ``out`` (SIZE,) along ``many`` lines whose cue must be steeper than ``STEEPEST``, unless none were left."""
     rails, x, y, left = cue[C_RAILS:], positions[0, 0], positions[0, 1], 0
     for line in range(many):
         aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
@@ -132,8 +131,9 @@ def masks(which, positions, on_table, game, options, cue, out):
         for n in range(parts):
             on, available = strikeable(row, mask), True
             if parts > 1:
-                on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
-                available = declarations.may_nominate(n, row)
+                ball = declarations.nominated_ball(n, row)
+                on = declarations.playable(row, mask, ball)
+                available = n == 0 if ball <= 0 else ball == YELLOW + n - 1
             p, here, many, pots = positions[k], on_table[k], 1, False
             chooses = available and here[0]
             crowded = chooses and _lacks_room(p, here, cue[C_RAILS:], 0.0, 0.0)
@@ -152,12 +152,6 @@ def masks(which, positions, on_table, game, options, cue, out):
                 at += 1
 
 
-def require_choices(actions: object) -> None:
-    """ValueError unless these actions are choices, which have masks."""
-    if not isinstance(actions, Choices):
-        raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
-
-
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
     With "nominate" in ``says``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
@@ -167,19 +161,15 @@ class Choices:
     size: int = 1
     placement: bool = False
     says: tuple[str, ...]
+    declares: bool  # whether the last choices are declarations
     choices: int
     space: "spaces.Discrete[np.int64]"  # evaluated, it would need Gymnasium 1.2.2
 
     def __init__(self, says: Collection[str] = ()):
         self.says = tuple(name for name in declarations.SAYS if name in says)
-        parts = 1 + declarations.COLOURS * ("nominate" in says)
-        self.choices = SIZE * parts + sum(name in says for name in declarations.DECLARES)
-        self.space = spaces.Discrete(self.choices)
-
-    @property
-    def declares(self) -> bool:
-        """Whether the last choices are declarations."""
-        return any(name in self.says for name in declarations.DECLARES)
+        declares = sum(name in says for name in declarations.DECLARES)
+        self.choices = SIZE * (1 + declarations.COLOURS * ("nominate" in says)) + declares
+        self.declares, self.space = declares > 0, spaces.Discrete(self.choices)
 
     def check(self, action: Action) -> list[float]:
         """The choice in a list; ValueError unless it is an integer in [0, choices)."""

@@ -167,8 +167,8 @@ def find_escapes(positions, on_table, on, lines, first):
 
 
 @kernel(seconds=1, uses=(collide_cushion,))
-def _ball_reached_by(aim, stroke, positions, on_table, law, work):
-    """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
+def _succeeds(aim, stroke, positions, on_table, on, law, work):
+    """Whether the cue ball meets a ball on first, by the engine's models, and no pocket's mouth before."""
     phys, motion, state, R = law.phys, work.motion, work.state, law.phys[P_R]
     (vx, vy, _), w = struck_by(stroke_in_room(aim, stroke, positions, on_table, law), law)
     boundaries, rough = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
@@ -187,36 +187,28 @@ def _ball_reached_by(aim, stroke, positions, on_table, law, work):
             if t <= until:
                 ball, until = i, t
         if ball:
-            return ball
+            return (on >> ball) & 1 != 0
         now = until
         if kind == events.CUSHION and wall <= motion[0, cloth.T_END]:
             (x, y), v, w = cloth.evaluate(motion, state, 0, wall, phys)
             end = _BED[nose, 0] == AXIS_Y
             if legs == _LEGS or _in_mouth(x, y, end):
-                return 0
+                return False
             nx, ny = (0.0, _BED[nose, 1]) if end else (_BED[nose, 1], 0.0)
             e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
             v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, (nx, ny), rough, e, work.series)
             if not solved:
-                return 0
+                return False
             cloth.begin(motion, state, 0, wall, (x, y), (v3[0], v3[1]), w, phys)
             legs += 1
         else:
             cloth.next_phase(motion, state, 0, phys)
-    return 0
-
-
-@kernel(uses=(_ball_reached_by,))
-def _succeeds(aim, stroke, positions, on_table, on, law, work):
-    """Whether the stroke meets a ball on first."""
-    ball = _ball_reached_by(aim, stroke, positions, on_table, law, work)
-    return ball > 0 and (on >> ball) & 1 != 0
+    return False
 
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) meets a ball on: the middle of the widest, then nearest
-    window about ``about``, or ``about`` itself."""
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest, nearest window about ``about``, or that itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

@@ -1,6 +1,7 @@
 """What does ``observation="strokes"`` show? What a player foresees of each stroke on the menu, by closed forms: no shot is
 simulated and nothing is learned. One kernel for one table and a thousand."""
 
+from collections import namedtuple
 from math import acos, atan2, pi
 from typing import NamedTuple
 
@@ -15,27 +16,17 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.parameters import Physics
 from . import cue_ball_path as path
+from . import stroke_menu as menu
 from .box_actions import FASTEST, SLOWEST
 from .cue_ball_path import foresee_contact, foresee_pot, is_fair, leave
 from .escapes import LINE_ROOM
 from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, C_RAILS, CueLaw
-from .lines import aim_on, end_red_of_rack, find_safe_lines, list_lines, new_work
+from .lines import aim_on, end_red_of_rack, find_lines, list_lines, new_work
 from .noise import POT_SPEED, Noise, Spread
 from .observations import BALLS_SIZE, FRAME_ENTRIES, STATE_ENTRIES, STROKE_SIZE, scale_log, scale_room
 from .pot_aim import aim_from
-from .pot_chance import at_elevation, length_of, pot_chance
-from .rule_of_thumb import RULE_OF_THUMB, points_left, worth_of_pots
+from .pot_chance import RULE_OF_THUMB, at_elevation, length_of, points_left, pot_chance, worth_of_pots
 from .stroke import row_of
-from .stroke_menu import (
-    DECISIONS,
-    PER_SPEED,
-    SAFE_ALONG,
-    SAFETIES,
-    TOPS,
-    decisions_of,
-    menu_stroke,
-    safe_stroke,
-)
 
 F_THERE, F_POT, F_CHANCE, F_LOG, F_POINTS, F_SPEED, F_TOP, F_CUT, F_TOLERANCE = range(9)
 F_X, F_Y, F_NOSES, F_BALLS, F_RUN, F_LOST, F_MISSED, F_NEAR, F_REACH = range(9, 18)
@@ -63,18 +54,8 @@ class Errors(NamedTuple):
         return cls(np.array([one.core for one in each]), each[0].lapse, each[0].factor)
 
 
-class Desk(NamedTuple):
-    """Work space: predictions of both balls, the stroke, the table it leaves, the open runs and pots there, the aims."""
-
-    seen: Floats
-    its: Floats
-    stroke: Floats
-    after: Floats
-    there: np.ndarray
-    runs: Floats
-    pots: Floats
-    chances: Floats
-    aims: Floats
+Desk = namedtuple("Desk", "seen its stroke after there runs pots chances aims")
+"""Work space: predictions of both balls, the stroke, the table it leaves, the open runs and pots there, the aims."""
 
 
 @kernel
@@ -116,10 +97,10 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     ghost, target = (pot[GHOST_X], pot[GHOST_Y]), (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y])
     aim, length = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]), length_of(positions, pot)
     speeds = errors.cores.shape[0] - 1
-    for index in range(speeds * len(TOPS)):
-        level, height = index // len(TOPS), index % len(TOPS)
+    for index in range(speeds * len(menu.TOPS)):
+        level, height = index // len(menu.TOPS), index % len(menu.TOPS)
         one = rows[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
-        _, speed, side, top = menu_stroke(index, speeds)
+        _, speed, side, top = menu.menu_stroke(index, speeds)
         if level:  # from the same tip at the last speed
             aim = desk.aims[height]
         lies = positions, on_table, ball, target, ghost, (speed, side, top, 0.0), law, work
@@ -132,7 +113,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         chance = pot_chance(pot[TOLERANCE], length, spread)
         _observe_path_into(one, seen)
         one[F_THERE] = one[F_POT] = 1.0
-        one[F_SPEED], one[F_TOP] = speed / FASTEST, top / TOPS[-1]
+        one[F_SPEED], one[F_TOP] = speed / FASTEST, top / menu.TOPS[-1]
         one[F_CHANCE], one[F_LOG] = chance, scale_log(chance)
         one[F_POINTS], one[F_CUT] = points / 7.0, acos(min(1.0, pot[COS_CUT])) / (0.5 * pi)
         one[F_TOLERANCE] = scale_room(pot[TOLERANCE])
@@ -155,7 +136,7 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
     _observe_path_into(one, seen)
     lost = seen[path.LOST] > 0.0
     one[F_THERE], one[F_FOUL] = 1.0, 0.0 if is_fair(ball, touching, on) and not lost else 1.0
-    one[F_SPEED], one[F_TOP] = desk.stroke[0] / FASTEST, desk.stroke[2] / TOPS[-1]
+    one[F_SPEED], one[F_TOP] = desk.stroke[0] / FASTEST, desk.stroke[2] / menu.TOPS[-1]
     one[F_TOLERANCE], one[F_POINTS] = scale_room(room), VALUES[ball] / 7.0
     one[F_REACH] = its[path.LOST] if ball else 0.0
     if not in_frame or lost:
@@ -178,7 +159,9 @@ def _repeat_last(rows, many, size):
 
 
 @entry(
-    what="what is foreseen of strokes", seconds=4, uses=(aim_on, _foresee_pots, _foresee_line, safe_stroke)
+    what="what is foreseen of strokes",
+    seconds=4,
+    uses=(aim_on, _foresee_pots, _foresee_line, menu.safe_stroke),
 )
 def foresee(which, at, player, tables, rules, errors, out):
     """What ``player`` foresees on the tables ``which``, into the rows ``at`` of ``out``, which hold the flat observation.
@@ -186,11 +169,11 @@ def foresee(which, at, player, tables, rules, errors, out):
     (positions, on_table, game), (code, cues, phys, fidelity, n_steps) = tables, rules
     work, in_frame = new_work(), game.shape[1] > columns.STRIKER
     speeds = errors.cores.shape[0] - 1
-    along, at_pots = speeds * len(TOPS), speeds * PER_SPEED
-    strokes = at_pots + (SAFETIES if in_frame else 0)
-    choices, state = strokes + (DECISIONS if in_frame else 0), STATES[1 if in_frame else 0]
+    along, at_pots = speeds * len(menu.TOPS), speeds * menu.PER_SPEED
+    strokes = at_pots + (menu.SAFETIES if in_frame else 0)
+    choices, state = strokes + (menu.DECISIONS if in_frame else 0), STATES[1 if in_frame else 0]
     table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_), np.empty((MOST_RUNS, RUN_COLUMNS))
-    wide = np.empty((_LEFT, POT_COLUMNS)), np.empty(0), np.empty(len(TOPS))
+    wide = np.empty((_LEFT, POT_COLUMNS)), np.empty(0), np.empty(len(menu.TOPS))
     desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
     for j in range(which.shape[0]):
         k, rows = which[j], out[at[j]]
@@ -213,7 +196,7 @@ def foresee(which, at, player, tables, rules, errors, out):
                 _foresee_pots(work.lines[line], p, here, row, law, errors, work, desk, its)
                 continue
             for index in range(along):
-                _, stroke[0], stroke[1], stroke[2] = menu_stroke(index, speeds)
+                _, stroke[0], stroke[1], stroke[2] = menu.menu_stroke(index, speeds)
                 played = stroke[0], stroke[1], stroke[2], 0.0
                 stroke[3] = aim_on(line, pots, played, p, here, on, law, work)
                 one, space = its[index * STROKE_SIZE : (index + 1) * STROKE_SIZE], work.lines[line, LINE_ROOM]
@@ -221,15 +204,15 @@ def foresee(which, at, player, tables, rules, errors, out):
         _repeat_last(rows[: at_pots * STROKE_SIZE], many * along * STROKE_SIZE, along * STROKE_SIZE)
         if not in_frame:
             continue
-        many, end_red = find_safe_lines(p, here, on, work.lines), end_red_of_rack(p, here)
+        many, end_red = find_lines(p, here, on, work.lines, True), end_red_of_rack(p, here)
         safeties = rows[at_pots * STROKE_SIZE : strokes * STROKE_SIZE]
-        for index in range(many * SAFE_ALONG):
-            line, safe = index // SAFE_ALONG, (p, here, on, law, work)
-            stroke[0], stroke[1], stroke[2], stroke[3] = safe_stroke(index, end_red, work.lines, *safe)
+        for index in range(many * menu.SAFE_ALONG):
+            line, safe = index // menu.SAFE_ALONG, (p, here, on, law, work)
+            stroke[0], stroke[1], stroke[2], stroke[3] = menu.safe_stroke(index, end_red, work.lines, *safe)
             one = safeties[index * STROKE_SIZE : (index + 1) * STROKE_SIZE]
             _foresee_line(work.lines[line, LINE_ROOM], p, here, on, in_frame, law, errors, work, desk, one)
-        _repeat_last(safeties, many * SAFE_ALONG * STROKE_SIZE, SAFE_ALONG * STROKE_SIZE)
-        again, back = decisions_of(row, code)
+        _repeat_last(safeties, many * menu.SAFE_ALONG * STROKE_SIZE, menu.SAFE_ALONG * STROKE_SIZE)
+        again, back = menu.decisions_of(row, code)
         decisions = rows[strokes * STROKE_SIZE : end]
         decisions[F_THERE], decisions[STROKE_SIZE + F_THERE] = again, back
         decisions[F_POT], decisions[STROKE_SIZE + F_POT] = -1.0, -1.0

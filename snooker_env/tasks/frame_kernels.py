@@ -11,16 +11,18 @@ from .._lib.types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
 from ..game.attempt import ATTEMPT_GAP, closest_approach
-from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
+from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW, available, bits
 from ..game.fouls import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from ..game.paths import best_paths
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
 from ..game.shut_in import shut_in
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.cue import squirt
 from ..physics.engine import EventKind, Status
 from . import declarations, stroke
-from .kernel_arrays import OutputArrays, PlayedArrays, TableArrays
+from .box_actions import tip_on_disc
+from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, OutputArrays, PlayedArrays, StruckArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, frame_reward_of
 from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
@@ -52,17 +54,6 @@ class Setting(NamedTuple):
 
 
 @kernel
-def choose(k, what, tables, saved):
-    """Carry the allowed decision ``what`` after a foul out; whether a stroke of the same player follows."""
-    columns.choose(tables.game[k], what)
-    if what == columns.REPLACE:
-        p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
-        for i in range(N_BALLS):
-            p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
-    return what == columns.PLAY or what == columns.PLACE_ANYWHERE
-
-
-@kernel
 def give_up(row, reward):
     """Charge whoever gave a frame up, or lost by a third miss, with the points left, S4 R5(b)."""
     if reward != FRAMES_PAID:
@@ -72,7 +63,7 @@ def give_up(row, reward):
 
 @kernel
 def say(k, declared, decision, reward, tables, saved):
-    """Carry out what the striker may say, and says, before a stroke; whether one follows."""
+    """Carry out what the striker may say, and says, before a stroke; whether one of the same player follows."""
     row = tables.game[k]
     if declared == declarations.CONCEDES:
         columns.concede(row)
@@ -83,8 +74,28 @@ def say(k, declared, decision, reward, tables, saved):
         other = declared == declarations.OTHER_BEGINS
         columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
     elif row[columns.PHASE] == columns.CHOICE:
-        return choose(k, decision, tables, saved)
+        columns.choose(row, decision)
+        if decision == columns.REPLACE:
+            p, on, back, back_on = (
+                tables.positions[k],
+                tables.on_table[k],
+                saved.positions[k],
+                saved.on_table[k],
+            )
+            for i in range(N_BALLS):
+                p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
+        return decision == columns.PLAY or decision == columns.PLACE_ANYWHERE
     return declared == declarations.SAYS_NOTHING
+
+
+@entry(what="what actions say", seconds=1)
+def read_sayings(actions, options, game, rules, nominated, decisions, declared):
+    """What the strikers of n frames say with their actions: nominations, decisions and declarations (n,)."""
+    for k in range(len(game)):
+        row, a = game[k], actions[k]
+        declared[k] = declarations.declaration_of(a, options, row)
+        decisions[k] = declarations.decision_of(a, options, row, rules)
+        nominated[k] = declarations.nomination_of(a, options, row)
 
 
 @entry(what="the decisions of frames", seconds=2)
@@ -101,13 +112,30 @@ def decide(which, actions, options, tables, saved, setting, plays):
             tables.nominated[k] = declarations.nomination_of(a, options, row)
 
 
-@kernel
-def _hand_back(row):
-    """Return the table to the agent, who plays alone."""
-    if not row[columns.OVER] and row[columns.STRIKER] != AGENT:
-        if row[columns.PHASE] == columns.CHOICE:
-            columns.choose(row, columns.PLAY_AGAIN)
-        row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
+@entry(what="the strokes of players in frames", seconds=3)
+def carry_out(which, asked, tables, saved, setting, packed, shots, playing):
+    """Strokes ``asked`` (``frames.Asked``) of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m."""
+    values, places, nominate, decisions, declared = asked
+    tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
+    setting, (cues, noise), m = Setting(*setting), packed, 0
+    for k in which:
+        row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
+        cue_row = cues[stroke.row_of(k, cues)]
+        says = declared[k] if declarations.may_declare(declared[k], row) else declarations.SAYS_NOTHING
+        decision = columns.allowed_choice(row, decisions[k], setting.rules)
+        if not say(k, says, decision, setting.reward, tables, saved):
+            continue
+        colour = max(0, nominate[k] - YELLOW + 1)
+        tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
+        if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
+            stroke.place(p, on, places[k, 0], places[k, 1], row[columns.ANYWHERE] != 0)
+        speed, aim, elevation = values[k, 0], values[k, 3], values[k, 4]
+        side, top = tip_on_disc(values[k, 1], values[k, 2], cue_row[C_MAX_OFFSET])
+        intended = (speed, side, top, aim - squirt(side, cue_row[C_END_MASS]), elevation)
+        stroke.strike(intended, p, on, tables.streams[k], cue_row, noise, m, shots)
+        playing[m] = k
+        m += 1
+    return m
 
 
 @entry
@@ -171,8 +199,10 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
         played[k] += 1
         if reported:
             write_stroke_info(k, out, j, shots, ball_on, result)
-        if alone:
-            _hand_back(row)
+        if alone and not row[columns.OVER] and row[columns.STRIKER] != AGENT:
+            if row[columns.PHASE] == columns.CHOICE:
+                columns.choose(row, columns.PLAY_AGAIN)
+            row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
 @kernel
@@ -241,28 +271,21 @@ def _write_frame_info(k, row, player, replies, out):
         counts[k, I_FRAME] = row[columns.FRAMES_0] + row[columns.FRAMES_1] - row[columns.OVER]
 
 
-@kernel
-def _worth(row, reward):
-    """What the agent has earned so far, as the ``reward`` counts it: its lead in frames, or in points."""
-    if reward == FRAMES_PAID:
-        return row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
-    return columns.lead_of(row, AGENT)
-
-
 MOST_STEPS = 20  # steps of an episode of one stroke at most: a player who fouls, or is sent back, plays again
 
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, through, replies, played, output):
-    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether one stroke was to be played,
-    and was. No end stays ``due``."""
+    """Write a step's results; ``played``: whether the agent had a stroke; ``through``: whether its only one was. No end stays ``due``."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         row = tables.game[k]
         row[columns.STEPS] += 1
-        worth = _worth(row, setting.reward)
+        worth = columns.lead_of(row, AGENT)
+        if setting.reward == FRAMES_PAID:
+            worth = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
         winner = row[columns.WINNER] if row[columns.OVER] else -1
         out.rewards[k] = frame_reward_of(setting.reward, worth - row[columns.PAID], winner, AGENT)
         row[columns.PAID], due[k] = worth, False
@@ -279,54 +302,18 @@ def finish(which, tables, saved, setting, due, through, replies, played, output)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
 
-@entry
-def inform(player, game, output):
-    """The info of the first table as ``player`` sees it, without a stroke."""
-    out = OutputArrays(*output)
-    write_empty_info(0, out, game[0, columns.BALL_ON])
-    _write_frame_info(0, game[0], player, 0, out)
-
-
 @entry(what="the start of a frame", seconds=1)
-def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. The agent breaks or, if ``drawn``, ``breakers`` (n,), by lot where that is -1. A
-    number is drawn in any case, so that the errors of strokes do not depend on it."""
+def begin(which, breakers, in_hand, on_table, game):
+    """New frames on tables already dealt; ``breakers`` (m,): who breaks on each."""
     for j in range(which.shape[0]):
         k = which[j]
-        breaker = AGENT
-        if drawn:
-            u, _ = pair(streams[k])
-            breaker = breakers[k] if breakers[k] >= 0 else int(2.0 * u)
-        columns.begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
-        game[k, columns.FIRST_BREAK] = breaker
-
-
-@entry(what="the frames of a match", seconds=1)
-def count_frames(which, game, needed, goes_on):
-    """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
-    for j in range(which.shape[0]):
-        row = game[which[j]]
-        row[columns.FRAMES_0 + row[columns.WINNER]] += 1
-        goes_on[j] = row[columns.FRAMES_0 + row[columns.WINNER]] < needed
-
-
-@entry(what="the next frame of a match", seconds=1)
-def begin_next(which, alone, reward, in_hand, on_table, game):
-    """The next frames of matches, already dealt: the players break in turn; what was not paid stays so."""
-    for j in range(which.shape[0]):
-        k = which[j]
-        row = game[k]
-        won, lost = row[columns.FRAMES_0], row[columns.FRAMES_1]
-        first, steps = row[columns.FIRST_BREAK], row[columns.STEPS]
-        paid = row[columns.PAID] if reward == FRAMES_PAID else row[columns.PAID] - columns.lead_of(row, AGENT)
-        columns.begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
-        row[columns.FRAMES_0], row[columns.FRAMES_1], row[columns.FIRST_BREAK] = won, lost, first
-        row[columns.STEPS], row[columns.PAID] = steps, paid
+        columns.begin_frame(game[k], bits(on_table[k]), breakers[j], in_hand)
+        game[k, columns.FIRST_BREAK] = breakers[j]
 
 
 @entry(what="the resets of frames", seconds=1)
-def show(which, fresh, tables, saved, setting, replies, output, last):
-    """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
+def show(which, fresh, player, tables, saved, setting, replies, output, last):
+    """Write the results of a reset as ``player`` sees the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -334,14 +321,15 @@ def show(which, fresh, tables, saved, setting, replies, output, last):
         if fresh:
             keep_last(k, out, last)
         write_empty_info(k, out, tables.game[k, columns.BALL_ON])
-        _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
-        observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
+        _write_frame_info(k, tables.game[k], player, replies[k], out)
+        observe_frame_into(out.observations[k], k, tables, saved, setting, player)
 
 
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, tables, saved, shots, noses, jaws):
-    """Record the layouts before the strokes, and which paths were clear before those that struck no ball on
-    first. S3 R14(c) speaks of every ball "that is or could be on": after a red, all colours."""
+    """Record the layouts before the strokes, and which paths were clear before those that struck no ball on first; strokes
+    with neither path that struck no ball that could be on are no attempts, unless ``judge_attempts`` says so. S3 R14(c)
+    speaks of every ball "that is or could be on": after a red, all colours."""
     tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), PlayedArrays(*shots)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -350,27 +338,17 @@ def remember(which, tables, saved, shots, noses, jaws):
         positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
         mask, seen = bits(on_table), shots.seen[j]
         first, touching, moved, potted, off = stroke.see(j, shots, positions, on_table)
-        seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = True, False
+        seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH], seen[stroke.ATTEMPT] = True, False, True
         before = Before(mask, row[columns.BALL_ON], row[columns.FREE_BALL], 0)
         facts = Facts(first, touching, moved, potted, off, tables.nominated[k])
         if ruling(before, facts, 0).fouls & columns.MISSED:
             in_hand, on = row[columns.IN_HAND] + row[columns.ANYWHERE], columns.strikeable(row, mask & ~1)
             clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
             seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = clear, full
+            seen[stroke.ATTEMPT] = clear or full or first & on != 0
         for i in range(N_BALLS):
             saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[i, 0], positions[i, 1]
             saved.on_table[k, i] = on_table[i]
-
-
-@entry(what="the strokes of snookered strikers", seconds=1)
-def question(which, on_table, game, status, seen, asked):
-    """Find the shots whose attempt must be judged: ``asked[j]``; all others count as attempts."""
-    for j in range(which.shape[0]):
-        k = which[j]
-        asked[j] = False
-        seen[j, stroke.ATTEMPT] = True
-        if status[j] == _OK and not (seen[j, stroke.CLEAR_PATH] or seen[j, stroke.FULL_PATH]):
-            asked[j] = seen[j, stroke.FIRST] & columns.strikeable(game[k], bits(on_table[k]) & ~1) == 0
 
 
 @entry(what="the attempts of snookered strikers", seconds=1)
@@ -385,26 +363,23 @@ def gap_of(positions, on_table, row, shots, path, j):
     return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
 
 
-def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Write into ``b.seen`` which shots were attempts -> the gaps [m], by row, of shots that struck no ball on and had no clear
-    path: they are played again, uncounted, with their path. If no ball on can be hit, only balls on ahead stay."""
-    positions, on_table, game, *_ = tables.arrays
-    asked, cushions = np.empty(len(which), np.bool_), (tables.rules.table.noses, tables.rules.table.jaws)
-    question(which, on_table, game, b.status, b.seen, asked)
-    gaps = {}
-    for j in np.flatnonzero(asked).tolist():
+def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> None:
+    """Play the shots that ``remember`` took for no attempts once more, with their path, and judge them."""
+    cushions, m = (tables.rules.table.noses, tables.rules.table.jaws), len(which)
+    for j in np.flatnonzero((b.status[:m] == _OK) & (b.seen[:m, stroke.ATTEMPT] == 0)).tolist():
         k = int(which[j])
-        here, row, world = on_table[k], game[k], tables.world(k)
-        one, at = b, j
+        p, here, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        world, one, at = tables.world(k), b, j
         if not b.segments.shape[1]:
-            one, at = stroke.with_path(b, j, positions[k], here, *world), 0
-        gaps[j] = gap_of(positions[k], here, row, one.played, (one.segments, one.n_segments), at)
+            one, at = stroke.play_again(b, j, b.log, (p, here), world, path=True), 0
+        gap = gap_of(p, here, row, one.played, (one.segments, one.n_segments), at)
         placed, on = row[columns.IN_HAND] or row[columns.ANYWHERE], tables.on(k)
-        if gaps[j] > ATTEMPT_GAP and not placed and shut_in(positions[k], here, on, *cushions, BALL_RADIUS):
-            ahead = (positions[k] - positions[k, CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
-            only = here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
+        if gap > ATTEMPT_GAP and not placed and shut_in(p, here, on, *cushions, BALL_RADIUS):
+            ahead = (p - p[CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
+            only = (
+                here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
+            )  # no ball on can be hit: those ahead stay
             only[CUE] = True
-            one = stroke.with_path(b, j, positions[k], only, *world)
-            gaps[j] = gap_of(positions[k], only, row, one.played, (one.segments, one.n_segments), 0)
-        b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
-    return gaps
+            one = stroke.play_again(b, j, b.log, (p, only), world, path=True)
+            gap = gap_of(p, only, row, one.played, (one.segments, one.n_segments), 0)
+        b.seen[j, stroke.ATTEMPT] = gap <= ATTEMPT_GAP

@@ -1,14 +1,8 @@
 """How is a frame played, on one table or on thousands? Turns of two players, each table on its own.
 
-A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the
-referee, ``frame_kernels.conclude``. A step of the frame task is the turn of the agent, player 0, and all
-turns of the opponent, player 1, up to the agent's next one. Both players of a match play turn by turn.
-
-Alone (``opponent="none"``), the agent plays on after each miss and foul, without a free ball; penalties go to the
-opponent's score. With ``one_stroke`` the episode ends with the agent's first stroke that is no foul.
-
-If a frame ends in the opponent's first visit, the next step plays nothing, reports the end and pays the reward
-(``Frames.due``). A cue ball in hand is placed at once, so that observations show it; the player may move it."""
+A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the referee,
+``frame_kernels.conclude``. A step is the turn of the agent, player 0, and all turns of the opponent, player 1, up to the
+agent's next one. If a frame ends in the opponent's first visit, the next step plays nothing and reports it (``Frames.due``)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,16 +13,14 @@ import numpy as np
 from .._lib.check import refuse
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
-from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
+from ..game.balls import CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.fouls import AUTO
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
 from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import scale_to_unit
 from . import frame_kernels
 from .box_actions import Actions
-from .carry_out import carry_out
 from .discrete_actions import Choices
 from .foreseen import Errors
 from .frame_kernels import AGENT
@@ -39,12 +31,15 @@ from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
 from .stroke_menu import menu_size
-from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
+from .tables import I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables, uniform
 from .visit import Visits
 
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
+_OF_MATCHES = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
 Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
 """Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
+Prepare: TypeAlias = Callable[[Ints, ShotBuffers], Ints]
+"""Carries strokes of tables out up to the strike; returns the tables with a stroke."""
 
 
 class Opponent(Protocol):
@@ -70,17 +65,29 @@ class Seat:
         """The seat with the actions and errors of ``rules``."""
         return cls(rules.actions, rules.noise, player)
 
-    def pack(self, rules: Rules) -> tuple[Floats, Floats]:
-        """For the kernels: what its actions hold, and its errors."""
-        return self.actions.pack(), self.noise.pack(BALL_RADIUS, real=rules.cue == "real")
+
+def sayings(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
+    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k)."""
+    nominated, decisions, declared = np.empty((3, len(game)), np.int64)
+    reads, code = rules.actions.pack(), rules.rule_set.code
+    frame_kernels.read_sayings(actions, reads, game, code, nominated, decisions, declared)
+    return nominated, decisions, declared
 
 
 class Frames(Tables):
-    """n tables, each in the middle of its own frame."""
+    """n tables, each in the middle of its own frame, or of a frame of its match; one that the referee stops is truncated."""
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
-    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
+    COUNTS: tuple[str, ...] = (
+        *Tables.COUNTS,
+        "strokes",
+        "opponent_strokes",
+        "winner",
+        *FLAGS,
+        "misses",
+        "failures",
+    )
     SIZE = FRAME_SIZE
     COLUMNS = columns.COLUMNS
 
@@ -95,6 +102,8 @@ class Frames(Tables):
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
     ):
         rules = rules.rules if isinstance(rules, Options) else rules
+        if rules.frames:
+            self.COUNTS = (*self.COUNTS, "frames_won", "opponent_frames", "frame")
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
         self._saved_positions = np.zeros((n, N_BALLS, 2))
@@ -103,7 +112,7 @@ class Frames(Tables):
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
         if rules.observation == "strokes":
             self.SIZE += STROKE_SIZE * menu_size(rules.speeds, True) - BALLS_SIZE
-        elif rules.misses:
+        elif rules.miss != "off":
             self.SIZE += REPLACED_SIZE
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
@@ -119,16 +128,12 @@ class Frames(Tables):
 
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
-        self.seats = tuple(seats)
-        self._own = tuple(seat.pack(self.rules) for seat in self.seats)
-        world = self.rules.physics, self.rules.speeds
-        self._errors = tuple(Errors.of(seat.noise, *world) for seat in self.seats)
+        self.seats, rules, real = tuple(seats), self.rules, self.rules.cue == "real"
+        self.actions, self.noises = tuple(seat.actions for seat in seats), tuple(seat.noise for seat in seats)
+        self._own = tuple((seat.actions.pack(), seat.noise.pack(BALL_RADIUS, real=real)) for seat in seats)
+        self._errors = tuple(Errors.of(noise, rules.physics, rules.speeds) for noise in self.noises)
         # the winner of the lot is asked if either player can say who begins
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
-
-    def noise_of(self, player: int) -> Noise:
-        """The errors of a player; alone, the agent has both turns."""
-        return self.seats[min(player, len(self.seats) - 1)].noise
 
     @property
     def layouts_before(self) -> columns.Layouts:
@@ -136,14 +141,10 @@ class Frames(Tables):
         return columns.Layouts(self._saved_positions, self._saved_on_table)
 
     @property
-    def saved_arrays(self) -> tuple[Floats, Bools]:
-        """For kernels: the parts of ``saved``, in a plain tuple."""
-        return self._saved_positions, self._saved_on_table
-
-    @property
-    def _setting(self):
-        """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
-        return *self._numbers, self._lot, self._jaws
+    def _parts(self):
+        """For kernels: the parts of ``TableArrays``, ``Layouts`` and ``frame_kernels.Setting``, in plain tuples."""
+        saved = self._saved_positions, self._saved_on_table
+        return self.arrays, saved, (*self._numbers, self._lot, self._jaws)
 
     def _columns(self) -> tuple[str, ...]:
         more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due", "through")
@@ -152,11 +153,6 @@ class Frames(Tables):
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
         return frame_of(self.game[k], self.rules.miss, self.layouts_before, k, self.rules.game)
-
-    def on(self, k: int) -> int:
-        """The mask of the balls that may be struck first on table k; with a free ball every colour."""
-        free = COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, columns.FREE_BALL] else 0
-        return super().on(k) | free
 
     def lead(self) -> Ints:
         """The agent's scores minus the opponent's: (n,)."""
@@ -180,9 +176,11 @@ class Frames(Tables):
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
-        reads = self.seats[side].actions
+        reads = self.actions[side]
         if reads.declares or "nominate" in reads.says or self.game[which, columns.PHASE].any():
-            which = which[self.decide(which, actions, side)]
+            plays = np.empty(len(which), np.bool_)
+            frame_kernels.decide(which, actions, self._own[side][0], *self._parts, plays)
+            which = which[plays]
         self.address(which, actions, buffers, side)
         self.hold_late(which, buffers)
         return which
@@ -193,47 +191,36 @@ class Frames(Tables):
             limits, b = (self.rules.rule_set.code, self.rules.time_to_play), buffers
             frame_kernels.hold_late(which, self.game, *limits, b.v, b.w, b.aloft, b.shots)
 
-    def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
-        """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays, tables = np.empty(len(which), np.bool_), (self.arrays, self.saved_arrays, self._setting)
-        frame_kernels.decide(which, actions, self._own[side][0], *tables, plays)
-        return plays
+    def carry_out(self, which: Ints, asked: Asked, buffers: ShotBuffers, side: int) -> Ints:
+        """Carry the strokes ``asked`` of the seat ``side`` out up to the strike; returns the tables with a stroke."""
+        playing, packed = np.empty(len(which), np.int64), self.pack(side)[1:3]
+        m = frame_kernels.carry_out(which, asked, *self._parts, packed, buffers.struck, playing)
+        self.hold_late(playing[:m], buffers)
+        return playing[:m]
 
     def complete(
-        self,
-        which: Ints,
-        out: StepOutput,
-        buffers: ShotBuffers,
-        crew: Crew,
-        *,
-        reported: bool,
-        alone: bool = False,
+        self, which: Ints, out: StepOutput, b: ShotBuffers, crew: Crew, *, reported: bool, alone: bool = False
     ) -> None:
         """Play and judge the shots struck. ``reported``: in ``out``; ``alone``: the agent plays on."""
         if not len(which):
             return
-        unfinished = self.run(which, buffers)
-        self._conclude(which, buffers, out, reported, alone)
+        unfinished = self.run(which, b)
+        self._conclude(which, b, out, reported, alone)
         for j in unfinished:
-            self._conclude(which[j : j + 1], self.again(which, j, buffers), out, reported, alone)
-        crew.saw(which, buffers, reported)
+            self._conclude(which[j : j + 1], self.again(which, j, b), out, reported, alone)
+        crew.saw(which, b, reported)
 
     def _conclude(self, which, b, out, reported, alone):
-        if self.rules.misses:
+        tables, saved, setting = self._parts
+        if self.rules.miss != "off":
             cushions = self.rules.table.noses, self.rules.table.jaws
-            frame_kernels.remember(which, self.arrays, self.saved_arrays, b.played, *cushions)
+            frame_kernels.remember(which, tables, saved, b.played, *cushions)
         if self._miss == columns.ATTEMPTS:
             frame_kernels.judge_attempts(which, b, self)
-        tables, played = (self.arrays, b.played, self._setting), self._played if reported else self._replies
-        frame_kernels.conclude(which, *tables, reported, alone, played, out.arrays)
+        played = self._played if reported else self._replies
+        frame_kernels.conclude(which, tables, b.played, setting, reported, alone, played, out.arrays)
 
-    def turn(
-        self,
-        prepare: Callable[[Ints, ShotBuffers], Ints],
-        out: StepOutput,
-        crew: Crew,
-        which: Ints | None = None,
-    ) -> Bools:
+    def turn(self, prepare: Prepare, out: StepOutput, crew: Crew, which: Ints | None = None) -> Bools:
         """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
         playing = np.flatnonzero(~self.are_over()) if which is None else which
         self._played[playing] = 0
@@ -242,8 +229,7 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> Bools:
-        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k). Returns where there was a
-        stroke, (n,)."""
+        """One turn on each table that goes on; ``actions``: of each side (n, k). Returns where there was a stroke, (n,)."""
         going, striker = ~self.are_over(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -254,12 +240,26 @@ class Frames(Tables):
         out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
         return self._played > 0
 
     def go_on(self, which: Ints) -> None:
-        """After each turn: the next frame of a match, where one has ended. Here there is none."""
-        return
+        """After each turn, in a match: count the frames that have ended, and set up the next ones unless it is decided."""
+        ended = which[self.game[which, columns.OVER] != 0] if self.rules.frames else which[:0]
+        if not len(ended):
+            return
+        game, plan = self.game, self.rules.plan
+        game[ended, columns.FRAMES_0 + game[ended, columns.WINNER]] += 1
+        won = game[ended, columns.FRAMES_0 : columns.FRAMES_1 + 1]
+        if not len(ended := ended[won.max(axis=1) <= self.rules.frames // 2]):
+            return
+        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+        kept = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK, columns.STEPS, columns.PAID]
+        before = game[ended][:, kept]  # what was not paid stays so
+        if self._reward != FRAMES_PAID:
+            before[:, -1] -= self.lead()[ended]
+        first = before[:, :3].sum(axis=1) % 2 if len(self.seats) == 2 else np.full(len(ended), AGENT)
+        frame_kernels.begin(ended, first, plan.in_hand, self.on_table, game)
+        game[ended[:, None], kept] = before
 
     # steps and resets of the frame task
 
@@ -287,18 +287,15 @@ class Frames(Tables):
             crew(playing, lambda which, _: self._finish(which, out))
         if same_step:
             ended = np.flatnonzero(out.terminated | out.truncated)
-            # of the table as it lies, before the next rack
-            crew(ended, lambda which, _: self.show_masks(which, out.last_masks))
+            out.keep_masks(ended)
             self._start(ended, out, crew)
         elif anew:
             self._start(np.flatnonzero(waiting), out, crew)
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
         counted = self.due, self.through, self._replies, self._played
-        frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
-        self.show_strokes(which, which, out.observations)
-        self.show_conditions(which, out)
+        frame_kernels.finish(which, *self._parts, *counted, out.arrays)
+        self.show_rest(which, out)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
@@ -308,7 +305,7 @@ class Frames(Tables):
             asked = opponent.strokes(self, which, crew)
 
             def play(part, buffers, asked=asked):
-                struck = carry_out(self, part, asked, buffers, OPPONENT)
+                struck = self.carry_out(part, asked, buffers, OPPONENT)
                 self.complete(struck, out, buffers, crew, reported=False)
                 self.go_on(part)
 
@@ -319,7 +316,6 @@ class Frames(Tables):
         self.begun[wanted] = False  # until the opponent has played, if it breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
-        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _start(self, which, out, crew, breakers=None):
         """New frames, with the opponent's first visit if it breaks."""
@@ -336,44 +332,42 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); -1, or without them: by lot (by the agent
-        in an episode of one stroke)."""
-        plan, usual = self.rules.plan, AGENT if self.rules.one_stroke else -1
+        """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); without them by lot, of one stroke the agent."""
+        plan, first = self.rules.plan, np.full(len(which), AGENT)
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        breakers = np.full(self.n, usual) if breakers is None else breakers
-        frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
+        if drawn:  # a number in any case, so that the errors of strokes do not depend on it
+            lots = np.empty((len(which), 2))
+            uniform(which, self.streams, lots)
+            if breakers is not None:
+                first = breakers[which]
+            elif not self.rules.one_stroke:
+                first = (2.0 * lots[:, 0]).astype(np.int64)
+        frame_kernels.begin(which, first, plan.in_hand, self.on_table, self.game)
         self.begun[which], self.nominated[which] = True, AUTO
         self.due[which] = self.through[which] = False
         self.draw_conditions(which)
 
     def _show(self, which, out, *, fresh):
-        tables = self.arrays, self.saved_arrays, self._setting
-        frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
-        self.show_strokes(which, which, out.observations)
-        self.show_conditions(which, out)
+        frame_kernels.show(which, fresh, AGENT, *self._parts, self._replies, out.arrays, out.last)
+        self.show_rest(which, out)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: output of the last stroke."""
-        out = self.output()  # the entries that depend on the player
-        frame_kernels.inform(player, self.game, out.arrays)
-        self.show_conditions(slice(None), out)
+        out, first = self.output(), np.zeros(1, np.int64)  # the entries that depend on the player
+        frame_kernels.show(first, False, player, *self._parts, self._replies, out.arrays, out.last)
+        if self.rules.drawn:
+            out.reals[:, -CONDITIONS:] = self.conditions
         if last is not None:
             for column in (I_POINTS, I_SECONDS):
                 out.reals[0, column] = last.reals[0, column]
-            out.counts[0, : len(COUNTS)] = last.counts[0, : len(COUNTS)]
+            many = len(Tables.COUNTS)
+            out.counts[0, :many] = last.counts[0, :many]
         return self.info(out, 0)
-
-    def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
-        """See ``Tables.action_masks``; of the player in seat ``side``."""
-        which = np.arange(self.n) if which is None else which
-        return self.masks_of(which, self.seats[side].actions)
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
-        frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
-        self.show_strokes(which, np.arange(len(which)), rows, player)
-        if self.rules.observed:
-            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
+        frame_kernels.observe(which, player, *self._parts, rows)
+        self.observe_rest(which, np.arange(len(which)), rows, player)
         return rows
 
     # states
@@ -383,19 +377,22 @@ class Frames(Tables):
         strokes, opponent = self.game[k, [columns.STROKES, columns.OPPONENT]].tolist()
         unpaid = int(self._worth(k) - self.game[k, columns.PAID])
         paid = {"opponent": opponent, "unpaid": unpaid, "due": bool(self.due[k])}
-        return super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
+        state = super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
+        if not self.rules.frames:
+            return state
+        *won, first = self.game[k, _OF_MATCHES].tolist()
+        return state | {"frames": won, "first_break": first, "best_of": self.rules.frames}
 
     def _worth(self, k):
         """What the agent has earned in the episode so far, as its reward counts."""
-        mine, other = columns.SCORE_0 + AGENT, columns.SCORE_1 - AGENT
-        if self._reward == FRAMES_PAID:
-            mine, other = columns.FRAMES_0 + AGENT, columns.FRAMES_1 - AGENT
-        return self.game[k, mine] - self.game[k, other]
+        won = self.game[k, columns.FRAMES_0 + AGENT] - self.game[k, columns.FRAMES_1 - AGENT]
+        return won if self._reward == FRAMES_PAID else self.lead()[k]
 
     def check_state(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
     ) -> FrameState:
-        """See ``Tables.check_state``. The striker must be the agent, unless ``either``."""
+        """See ``Tables.check_state``. The striker must be the agent, unless ``either``, or if the caller plays both sides."""
+        either = either or (len(self.seats) == 2 and self.seats[OPPONENT].player is None)
         sound = check_frame_state(state, self.rules, generator, lot=self._lot)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
         if sound.due and not (over or stopped):
@@ -418,7 +415,9 @@ class Frames(Tables):
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.layouts_before, k)
         self.game[k, columns.OPPONENT] = state.opponent
-        self.game[k, columns.FIRST_BREAK] = state.frame.breaker
+        self.game[k, _OF_MATCHES] = *(state.frames or (0, 0)), state.frame.breaker
+        if state.first_break is not None:
+            self.game[k, columns.FIRST_BREAK] = state.first_break
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
         self._set_state(k, state)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
@@ -445,45 +444,13 @@ class Frames(Tables):
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"
-        return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        won = self.game[k, _OF_MATCHES].tolist()
+        match = f"frames {won[0]} - {won[1]}   " if self.rules.frames else ""
+        return (
+            match
+            + f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        )
 
 
-class Matches(Frames):
-    """n tables, each in a match; stopped by the referee in a frame, it is truncated."""
-
-    COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
-
-    def go_on(self, which: Ints) -> None:
-        """Count the frames that have just ended, and set up the next ones unless the match is decided."""
-        ended = which[self.game[which, columns.OVER] != 0]
-        if not len(ended):
-            return
-        goes_on = np.empty(len(ended), np.bool_)
-        frame_kernels.count_frames(ended, self.game, self.rules.frames // 2 + 1, goes_on)
-        if not len(ended := ended[goes_on]):
-            return
-        plan = self.rules.plan
-        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        alone = len(self.seats) == 1
-        frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
-
-    def get_state(self, k: int) -> dict[str, Any]:
-        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
-        first = int(self.game[k, columns.FIRST_BREAK])
-        match = {"frames": won, "first_break": first, "best_of": self.rules.frames}
-        return super().get_state(k) | match
-
-    def set_state(self, k: int, state: FrameState) -> None:
-        super().set_state(k, state)
-        assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
-        match = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
-        self.game[k, match] = *state.frames, state.first_break
-        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
-
-    def text(self, k: int) -> str:
-        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
-        return f"frames {won[0]} - {won[1]}   {super().text(k)}"
-
-
-TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Matches}
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Frames}
 """Which class plays each ``task``."""

@@ -1,12 +1,12 @@
 """What do the kernels of tasks take? Arrays of tables, shots and a step's results, dynamics, and work space. Python hands
 over plain tuples, which a kernel names: a named tuple takes 0.7 us more, and each array 0.1 us."""
 
+from collections import namedtuple
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .._lib.types import Bools, Floats, Ints, Singles, Words
+from .._lib.types import Floats
 from ..physics.parameters import Physics
 
 # Columns of a cue's row: one row for all tables, or one for each.
@@ -28,52 +28,16 @@ Packed: TypeAlias = tuple[Floats, Floats, Floats, Floats]
 ``Physics``, likewise."""
 
 
-class TableArrays(NamedTuple):
-    """n tables, as ``Tables`` has them."""
-
-    positions: Floats
-    on_table: Bools
-    game: Ints
-    streams: Words
-    nominated: Ints
-
-
-class StruckArrays(NamedTuple):
-    """Shots before they are played, as ``ShotBuffers`` has them."""
-
-    r: Floats
-    v: Floats
-    w: Floats
-    aloft: Floats
-    here: Bools
-    shots: Floats
-    kicks: Floats
-
-
-class PlayedArrays(NamedTuple):
-    """Shots that came to rest, as ``ShotBuffers`` has them."""
-
-    r: Floats
-    aloft: Floats
-    shots: Floats
-    seen: Ints
-    potted: Ints
-    status: Ints
-    duration: Floats
-    event_time: Floats
-    event_what: NDArray[np.int32]
-    n_events: Ints
-
-
-class OutputArrays(NamedTuple):
-    """The results of a step, as ``StepOutput`` has them."""
-
-    observations: Singles
-    rewards: Floats
-    terminated: Bools
-    truncated: Bools
-    reals: Floats
-    counts: Ints
+TableArrays = namedtuple("TableArrays", "positions on_table game streams nominated")
+"""n tables, as ``Tables`` has them."""
+StruckArrays = namedtuple("StruckArrays", "r v w aloft here shots kicks")
+"""Shots before they are played, as ``ShotBuffers`` has them."""
+PlayedArrays = namedtuple(
+    "PlayedArrays", "r aloft shots seen potted status duration event_time event_what n_events"
+)
+"""Shots that came to rest, as ``ShotBuffers`` has them."""
+OutputArrays = namedtuple("OutputArrays", "observations rewards terminated truncated reals counts")
+"""The results of a step, as ``StepOutput`` has them."""
 
 
 class CueLaw(NamedTuple):
@@ -87,10 +51,6 @@ class CueLaw(NamedTuple):
     rails: Floats  # as in a cue's row
 
 
-class Work(NamedTuple):
-    """Work space of the kernels that seek a line of the cue ball; ``lines.new_work`` makes it."""
-
-    lines: Floats  # (LINE_ROWS, POT_COLUMNS): the pots or lines of a table, and windows
-    motion: Floats  # (2, cloth.COLUMNS)
-    state: Ints  # (2,) phases of two balls
-    series: Floats  # of the solution of an impact
+Work = namedtuple("Work", "lines motion state series")
+"""Work space of the kernels that seek a line, of ``lines.new_work``: pots or lines, and windows (LINE_ROWS, POT_COLUMNS); motion
+(2, cloth.COLUMNS) and phases (2,) of two balls; the solution of an impact."""

@@ -1,9 +1,6 @@
-"""Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
-
-``action="discrete"`` and ``aim="pot"`` choose among up to ``POTS`` lines; ``aim="target"`` is measured from the first.
-Without a direct pot they are, best first: at the start of a frame, thin at the end red of either side; where hardly
-anything is seen, escapes; the middle of the widest window of directions in which a ball on is met first, its two
-edges, thin, and the middles of other windows."""
+"""Along which lines may the cue ball be sent? To the direct pots; else, best first: at the start of a frame thin at the end
+red of either side; where hardly anything is seen, escapes; the middle of the widest window of directions in which a ball on
+is met first, its two edges, thin, and the middles of other windows."""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -117,9 +114,12 @@ def _add_thin(positions, on_table, lines, window, count):
 
 
 @kernel(uses=(find_escapes,))
-def _begin_lines(positions, on_table, on, lines, windows):
-    """The number of ``windows``, and of lines that come first: thin at the end reds of a rack, escapes."""
-    touching, end_red, count = touching_balls(positions, on_table), end_red_of_rack(positions, on_table), 0
+def find_lines(positions, on_table, on, rows, safe):
+    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS) or, of a ``safe`` stroke, up to ``SAFE_LINES``: thin
+    contacts before full ones, at the edges of all windows. Returns the number, >= 1."""
+    most, count = SAFE_LINES if safe else POTS, 0
+    lines, windows = rows[:most], rows[most:]
+    touching, end_red = touching_balls(positions, on_table), end_red_of_rack(positions, on_table)
     many = open_windows(positions, on_table, on, touching, windows)
     if end_red:
         outwards = -1.0 if positions[0, 0] < 0.0 else 1.0
@@ -129,80 +129,30 @@ def _begin_lines(positions, on_table, on, lines, windows):
             count = _add(lines, count, aim, space if space > NARROW else 0.0)
     if many == 0 or windows[0, HIGH] - windows[0, LOW] < 2.0 * NARROW:
         count = find_escapes(positions, on_table, on & ~touching, lines, count)
-    return many, count
-
-
-@kernel
-def _any_line(positions, on_table, on, lines, count):
-    """At least one line, where nothing is known to succeed."""
-    if count == 0:
-        lines[0, LINE_AIM], lines[0, LINE_ROOM] = nearest(positions, on_table, on), 0.0
-        lines[0, LINE_SPEED], lines[0, LINE_WORTH] = 1.0, 0.0
-    return max(1, count)
-
-
-@kernel(uses=(find_escapes,))
-def find_lines(positions, on_table, on, rows):
-    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
-    lines, windows = rows[:POTS], rows[POTS:]
-    many, count = _begin_lines(positions, on_table, on, lines, windows)
-    for k in range(many):  # the widest, thin at either edge, then the others
-        count = _add_middle(lines, windows[k], count)
-        if k == 0:
-            count = _add_thin(positions, on_table, lines, windows[k], count)
-    return _any_line(positions, on_table, on, lines, count)
-
-
-@kernel(uses=(find_escapes,))
-def find_safe_lines(positions, on_table, on, rows):
-    """The same for safeties, up to ``SAFE_LINES`` of them: thin contacts before full ones, at the edges of all windows."""
-    lines, windows = rows[:SAFE_LINES], rows[SAFE_LINES:]
-    many, count = _begin_lines(positions, on_table, on, lines, windows)
-    for k in range(many):
+    if many and not safe:
+        count = _add_middle(lines, windows[0], count)
+    for k in range(many if safe else min(many, 1)):
         count = _add_thin(positions, on_table, lines, windows[k], count)
-        if k == 0:
+        if k == 0 and safe:
             count = _add_middle(lines, windows[0], count)
     for k in range(1, many):
         count = _add_middle(lines, windows[k], count)
-    return _any_line(positions, on_table, on, lines, count)
+    if count == 0:  # nothing is known to succeed
+        lines[0, LINE_AIM], lines[0, LINE_ROOM] = nearest(positions, on_table, on), 0.0
+        lines[0, LINE_SPEED], lines[0, LINE_WORTH] = 1.0, 0.0
+    return max(1, count)
 
 
 @kernel
 def count_lines(positions, on_table, on, rows):
     """The number of lines to choose from, at least 1: direct pots, else others. ``rows``: work space."""
     many = count_pots(positions, on_table, on, BALL_RADIUS, POTS)
-    return many if many else find_lines(positions, on_table, on, rows)
-
-
-@kernel
-def line_of(positions, on_table, on, rows):
-    """Direction of the best line of the cue ball. An inner kernel.
-
-    Parameters
-    ----------
-    positions, on_table : numpy.ndarray
-        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
-    on : int
-        Mask of the balls that may be struck first, bit i for ball i.
-    rows : float64 (LINE_ROWS, POT_COLUMNS)
-        Work space.
-
-    Returns
-    -------
-    float
-        Direction [rad] from +x: to the ghost ball of the widest direct pot, else the best line of
-        ``action="discrete"``. Over cushions it is that of a rolling ball, which another stroke must correct.
-    """
-    if find_pots(positions, on_table, on, BALL_RADIUS, rows[:1]):
-        return atan2(rows[0, GHOST_Y] - positions[0, 1], rows[0, GHOST_X] - positions[0, 0])
-    find_lines(positions, on_table, on, rows)
-    return rows[0, LINE_AIM]
+    return many if many else find_lines(positions, on_table, on, rows, False)
 
 
 @kernel
 def aim_at_ball(aim, stroke, positions, on_table, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, reaches the ball that lies
-    in the direction ``aim``."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation) reaches the ball that lies in the direction ``aim``."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return aim
     x, y = positions[0, 0], positions[0, 1]
@@ -225,7 +175,7 @@ def aim_along(line, stroke, positions, on_table, on, law, work):
 def list_lines(positions, on_table, on, rows):
     """Write the lines to choose from, as ``find_lines``: direct pots, else others; their number, and whether they are pots."""
     many = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS])
-    return (many, True) if many else (find_lines(positions, on_table, on, rows), False)
+    return (many, True) if many else (find_lines(positions, on_table, on, rows, False), False)
 
 
 @kernel(uses=(solved_aim, aim_along))

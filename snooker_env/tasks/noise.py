@@ -39,8 +39,7 @@ TWICE = radians(15.0)
 
 
 class Spread(NamedTuple):
-    """How the cue ball's direction errs: normally with the standard deviation ``core`` [rad], in a lapse, of the probability
-    ``lapse``, with ``factor`` times that."""
+    """How the cue ball's direction errs: normally, with the deviation ``core`` [rad], in a lapse with ``factor`` times that."""
 
     core: float
     lapse: float = 0.0
@@ -171,8 +170,7 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """Convert a level's name (a key of ``LEVELS``) or a dict of fields (missing ones are 0); a ``Noise`` is
-        returned itself. ValueError for anything else."""
+        """Convert a level's name or a dict of fields; a ``Noise`` is returned itself. ValueError for anything else."""
         if isinstance(noise, cls):
             return noise
         if isinstance(noise, dict):
@@ -214,8 +212,7 @@ class Noise:
         return Spread(core, self.lapse, self.lapse_factor)
 
     def pack(self, R: float, *, real: bool = False) -> Floats:
-        """Return float64 (11,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
-        whether the errors of tip and aim grow with the elevation."""
+        """float64 (11,) for kernels, in columns ``N_*``. ``R``: the radius [m]; ``real``: whether errors grow with the elevation."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
         grows = 1.0 / TWICE if real else 0.0, self.growth
         deviations = self.speed_abs, self.speed_rel, tip, *turns

@@ -1,14 +1,15 @@
 """What does the agent observe? The balls, or the pots, and the state of the game, as float32 arrays."""
 
+from collections import namedtuple
 from math import acos, hypot, log10, pi
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
 from .._lib.check import choice, refuse
 from .._lib.jit import kernel
-from .._lib.types import Bools, Floats, Masks, Observation, ObservationKind, Singles
+from .._lib.types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
@@ -33,18 +34,12 @@ FRAME_ENTRIES = (
     *("respotted_black", "broke", "failures", "warned", "in_lot"),
     *("frames_won", "opponent_frames", "frames_needed", "clock", "misses", "anywhere"),
 )
-"""Entries that a frame adds, of one player's side, in [-1, 1] and never clipped. Scores s, its own and the
-opponent's, as s / (s + 147); their difference d / (abs(d) + 147); points on the table / 155. Flags: it is its
-turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul was called
-a miss, the black was re-spotted, it broke off. Failures in succession from one position / 2, and whether the
-next loses the frame. Whether the winner of the lot decides who begins. Of a match, f / (f + 1): the frames
-that it has won, the opponent's, those that win it (1 in a single frame). The share of the frame's time that
-has passed (0 without a clock); misses m in succession, m / (m + 5); whether the ball in hand goes anywhere."""
+"""Entries that a frame adds, of one player's side, in [-1, 1] and never clipped; docs/environment/specification.md has them."""
 REPLACED_COLUMNS = ("x", "y", "on_table")
 """Columns of the layout that "replace" restores, one row a ball; 0 unless a miss has just been called."""
 REACH = 1.1
 """Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
-on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
+on snooker's own tables, and within this bound on any that an environment takes (``options.table_of``)."""
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS  # numbers in the table of balls, the first part of a flat observation
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
@@ -57,10 +52,7 @@ POT_ENTRIES = (
     *("chance", "log_chance", "cut", "tolerance", "value"),
     *("x", "y", "cos", "sin", "distance", "pocket_x", "pocket_y"),
 )
-"""Entries of each of the ``POTS`` widest pots, widest first, as ``find_pots`` lists them; where there is none 0, log_chance
--1. The chance of a stroke at ``SHOWN_SPEED`` in the middle of the cue ball, and log10 of it / 2, at least -1; the cut, to the
-left above 0, / 90 degrees; the tolerance t [rad] as t / (t + 0.01); value / 7; the ball's place as in ``BALL_COLUMNS``;
-direction (x, y) and distance / 4 m of the ghost ball from the cue ball; the pocket's place."""
+"""Entries of each of the ``POTS`` widest pots, widest first, as ``find_pots`` lists them; the specification says what they are."""
 SHOWN_SPEED = 2.0  # the cue speed whose chances observations show [m/s]
 POTS_SIZE = POTS * len(POT_ENTRIES) + 2 + len(STATE_ENTRIES)
 """Numbers in the observation "pots" (61): the pots, the cue ball's place (0 when off the table), the state of the game."""
@@ -74,14 +66,9 @@ STROKE_SIZE = len(STROKE_ENTRIES)
 _FAR, _HALF = 4.0, 0.01  # longer than any path of the cue ball [m]; a middling tolerance [rad]
 
 
-class View(NamedTuple):
-    """How visits are observed."""
-
-    pots: bool  # whether pots are, in place of the balls
-    spread: Spread  # of the player, at ``SHOWN_SPEED``
-    rails: Floats  # as in a cue's row
-
-
+View = namedtuple("View", "pots spread rails")
+"""How visits are observed: whether pots are, in place of the balls; the player's ``Spread`` at ``SHOWN_SPEED``; rails as in a
+cue's row."""
 FLAT = View(False, Spread(1.0), np.empty(0))  # the balls
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -10,15 +11,17 @@ from gymnasium import spaces
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
+from ..game.banks import bank
 from ..game.frame import MISS_RULES
-from ..game.layouts import LayoutPlan
+from ..game.layouts import STORED_IN, LayoutPlan, plan_of
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
-from ..geometry import BALL_RADIUS
+from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import conditions
+from ..physics.bounds import deepest
 from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, physics_with
-from ..physics.table import Table, TableLike
+from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
 from . import observations
 from .box_actions import AIMS, Actions
 from .declarations import SAYS
@@ -27,7 +30,6 @@ from .kernel_arrays import Packed, pack_cue
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .stroke_menu import LEAST_SPEEDS, MOST_SPEEDS, SPEEDS, Menu
-from .table_fit import fit_plan, table_of
 
 TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0  # the most time to play [s]: the longest shot clock, after which no stroke is in time
@@ -46,6 +48,69 @@ OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of anothe
 object: a player or an OpponentPool; players.SeenPlayer wraps an object that acts on observations"""
 OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
 NEVER = 2**62  # stands for no limit of strokes or steps
+_NOSES_AGREE = 1e-9  # tolerance of noses, jaws and falls [m]
+
+
+def table_of(table: TableLike) -> Table:
+    """The ``Table`` of an environment's argument; ValueError unless it leaves every place free that a layout may deal: the noses
+    must be snooker's, and no jaw or fall may reach a ball at |x| <= 0.86275, |y| <= 1.75825."""
+    cloth = Table.of(table)
+    if cloth is UNBOUNDED:
+        raise refuse("table", table, 'must be "match", "tight" or a Table')
+    if cloth.ball_radius is not None and abs(cloth.ball_radius - BALL_RADIUS) > SAME_BALL:
+        made = f"this one is made for balls of radius {cloth.ball_radius:g} m, snooker's have {BALL_RADIUS:g}"
+        allowed = f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}'
+        raise refuse("table", cloth.name, allowed)
+    _check_noses(cloth)
+    _check_pockets(cloth)
+    past, most = (
+        deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS),
+        (observations.REACH - 1.0) * HALF_WIDTH,
+    )
+    if past > most:
+        allowed = f"must let no ball rest more than {most:.3g} m past the noses, where observations end (one can {past:.3g} m past them)"
+        raise refuse("table", cloth.name, allowed)
+    return cloth
+
+
+def _check_noses(cloth: Table) -> None:
+    for axis, half in enumerate((HALF_WIDTH, HALF_LENGTH)):
+        for side in (-1, 1):
+            levels = cloth.noses[(cloth.noses[:, 0] == axis) & (cloth.noses[:, 1] == side), 2]
+            if not len(levels) or np.abs(levels - half).max() > _NOSES_AGREE:
+                at = f"{'xy'[axis]} = {side * half:g}"
+                places = ", ".join(f"{side * level:g}" for level in levels) or "none"
+                allowed = f"must have its noses at {at} in Snooker-v0, whose layouts are made for that bed (found {places})"
+                raise refuse("table", cloth.name, allowed)
+
+
+def _check_pockets(cloth: Table) -> None:
+    room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
+    kinds = ("jaws", cloth.jaws, BALL_RADIUS), ("falls", cloth.falls, 0.0)
+    for name, circles, more in kinds:
+        reach = circles[:, 2] + more
+        inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
+        if len(inside) and inside.max() > _NOSES_AGREE:
+            k = int(inside.argmax())
+            free = f"|x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there"
+            into = f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
+            allowed = f"must leave a ball's centre free in {free}: {into}"
+            raise refuse("table", cloth.name, allowed)
+
+
+def fit_plan(layout: str, cloth: Table) -> LayoutPlan:
+    """The ``LayoutPlan`` of a layout on a table, without the stored tables that do not fit its pockets."""
+    plan = plan_of(layout)
+    return plan_of(layout, _unfit(cloth, STORED_IN[layout][0])) if len(plan.tables) else plan
+
+
+@lru_cache(8)
+def _unfit(cloth: Table, which: str) -> tuple[int, ...]:
+    """Indices of the tables of a bank with a ball, as dealt or mirrored, in a jaw or over a fall."""
+    if cloth is Table.preset("match"):
+        return ()  # the stored tables were played on it
+    tables = bank(which)
+    return tuple(sorted({*cloth.unfit(tables, BALL_RADIUS), *cloth.unfit(tables * (-1.0, 1.0), BALL_RADIUS)}))
 
 
 @dataclass(frozen=True)
@@ -75,11 +140,6 @@ class Rules:
     def rule_set(self) -> RuleSet:
         """The ``RuleSet`` of the game."""
         return rule_set(self.game)
-
-    @property
-    def misses(self) -> bool:
-        """Whether a foul and a miss is called."""
-        return self.miss != "off"
 
     def pack(self) -> Packed:
         """For the kernels, with one row of cues and constants for all tables."""
@@ -276,10 +336,8 @@ class Options:
                 raise refuse("time_to_play", self.time_to_play, allowed)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                allowed = (
-                    f"{OPPONENTS}; Options hold text only: pass an object to the environment, beside them"
-                )
-                raise refuse("opponent", self.opponent, allowed)
+                words = "Options hold text only: pass an object to the environment, beside them"
+                raise refuse("opponent", self.opponent, f"{OPPONENTS}; {words}")
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, kind
@@ -335,8 +393,7 @@ class Options:
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
-        """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
-        with ``task``, of those of this task. ValueError for an unknown group or task."""
+        """Name and default of each option of a group of ``GROUPS``, or of those of this ``task``. ValueError for an unknown one."""
         members = GROUPS[choice("name", name, GROUPS)]
         kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
         keys = {key for key in members if _ONLY.get(key) in (None, *kinds)}
@@ -358,7 +415,7 @@ def observation_space_of(
     rules, frame = options.rules, options.task != "visit"
     actions = rules.actions if actions is None else actions
     choices = actions.choices if isinstance(actions, Choices) else 0
-    more = {"replaced": rules.misses, "conditions": rules.observed, "speeds": rules.speeds}
+    more = {"replaced": rules.miss != "off", "conditions": rules.observed, "speeds": rules.speeds}
     return observations.space(rules.observation, frame=frame, choices=choices, **more)
 
 

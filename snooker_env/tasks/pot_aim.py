@@ -25,8 +25,7 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def stroke_in_room(aim, stroke, positions, on_table, law):
-    """(speed, side, top, aim of the cue, elevation) of a stroke (speed, side, top, elevation) that is to leave in the
-    direction ``aim``, its cue raised as it must be."""
+    """(speed, side, top, aim, elevation) of a stroke (speed, side, top, elevation) in the direction ``aim``, raised as it must be."""
     speed, side, top, elevation = stroke
     meant = speed, side, top, aim - cue.squirt(side, law.end_mass_ratio), elevation
     return in_room(meant, positions, on_table, law.rails, law.phys[P_R], law.max_offset)[0]
@@ -41,8 +40,7 @@ def struck_by(played, law):
 
 @kernel
 def meets(played, positions, b, law, work):
-    """Follow the cue ball of a stroke of ``stroke_in_room`` until it meets the ball at b, past all others -> whether, and when
-    [s]; both balls are then in ``work.motion``."""
+    """Follow the cue ball of ``stroke_in_room`` until it meets the ball at b -> whether, and when [s]; both are in ``work.motion``."""
     phys, motion, state = law.phys, work.motion, work.state
     (vx, vy, _), w = struck_by(played, law)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
@@ -59,8 +57,7 @@ def meets(played, positions, b, law, work):
 
 @kernel
 def _passes(played, positions, b, p, law, work):
-    """Angle [rad] by which the ball at b, hit by the cue ball of a stroke of ``stroke_in_room``, passes p on the
-    left; 9: missed."""
+    """Angle [rad] by which the ball at b, hit by a stroke of ``stroke_in_room``, passes p on the left; 9: missed."""
     (bx, by), (px, py) = b, p
     phys, motion, state = law.phys, work.motion, work.state
     met, t = meets(played, positions, b, law, work)
@@ -104,9 +101,8 @@ def _passes(played, positions, b, p, law, work):
 
 
 @kernel
-def _direction_at(played, far, positions, law, work):
-    """Direction [rad], from where it lies, in which the cue ball of a stroke of ``stroke_in_room`` is as ``far`` away
-    [m], or where it stops."""
+def _off(played, line, far, positions, law, work):
+    """Angle [rad], in (-pi, pi], from ``line`` to where ``played`` takes the cue ball after ``far`` [m], or where it stops."""
     phys, motion, state = law.phys, work.motion, work.state
     cx, cy = positions[0, 0], positions[0, 1]
     (vx, vy, _), w = struck_by(played, law)
@@ -128,13 +124,7 @@ def _direction_at(played, far, positions, law, work):
         if hypot(x - cx, y - cy) > far - _THERE:
             break
         cloth.next_phase(motion, state, 0, phys)
-    return atan2(y - cy, x - cx)
-
-
-@kernel
-def _off(played, line, far, positions, law, work):
-    """Angle [rad] from ``line`` to where the stroke ``played`` sends the cue ball, in (-pi, pi]."""
-    off = _direction_at(played, far, positions, law, work) - line
+    off = atan2(y - cy, x - cx) - line
     return off - 2.0 * pi * round(off / (2.0 * pi))
 
 

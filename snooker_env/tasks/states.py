@@ -1,6 +1,6 @@
 """Is a saved state valid? Checks every part of the result of ``get_state`` before any of it is used."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -45,9 +45,8 @@ class FrameState(NamedTuple):
     due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
     stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
-    frames: tuple[int, int] | None = None  # of a match, as the next two: the frames that each player has won
+    frames: tuple[int, int] | None = None  # of a match, as the next: the frames that each player has won
     first_break: int | None = None  # who broke first
-    best_of: int | None = None  # of how many frames at most
     conditions: dict[str, float] | None = None  # the constants drawn, by name; None: they are fixed
 
 
@@ -56,18 +55,6 @@ VISIT_KEYS = ("positions", "on_table", "ball_on", "in_hand", "points", "over", "
 FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
 MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a visit, of a frame, and of a match; with drawn constants also "conditions"."""
-
-
-def check_keys(state: object, keys: Collection[str]) -> None:
-    """Raise ValueError unless ``state`` is a dict with exactly these keys."""
-    if not isinstance(state, dict):
-        raise refuse("state", state, "must be a state of get_state(), a dict")
-    if missing := sorted(set(keys) - set(state)):
-        allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
-        raise refuse_what("state", f"a dict without {missing}", allowed)
-    if unknown := [key for key in state if key not in keys]:
-        allowed = f"must be a state of get_state() here, with the keys {list(keys)} only"
-        raise refuse_what("state", f"a dict with {unknown}", allowed)
 
 
 def check_layout(
@@ -124,11 +111,16 @@ def check_stream(stream: object) -> list[int]:
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def check_conditions(
-    state: Mapping[str, Any], keys: tuple[str, ...], rules: Rules
-) -> dict[str, float] | None:
-    """The constants drawn, in their order, None if they are fixed; ValueError for wrong ones or other keys."""
-    check_keys(state, (*keys, "conditions") if rules.drawn else keys)
+def check_keys(state: object, keys: tuple[str, ...], rules: Rules) -> dict[str, float] | None:
+    """The constants drawn, in their order, None if they are fixed; ValueError unless ``state`` is a dict with these keys."""
+    if not isinstance(state, dict):
+        raise refuse("state", state, "must be a state of get_state(), a dict")
+    keys = (*keys, "conditions") if rules.drawn else keys
+    allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
+    if missing := sorted(set(keys) - set(state)):
+        raise refuse_what("state", f"a dict without {missing}", allowed)
+    if unknown := [key for key in state if key not in keys]:
+        raise refuse_what("state", f"a dict with {unknown}", f"{allowed} only")
     if not rules.drawn:
         return None
     values = state["conditions"]
@@ -143,7 +135,7 @@ def check_visit(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
-    conditions, table, R = check_conditions(state, VISIT_KEYS, rules), rules.table, rules.physics.R
+    conditions, table, R = check_keys(state, VISIT_KEYS, rules), rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     on = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
@@ -169,9 +161,8 @@ def check_visit(
 def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
-    """The ``FrameState`` that a dict describes; ValueError names the first wrong part. ``lot``: whether a player may be asked
-    who begins at a re-spotted black."""
-    conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
+    """The ``FrameState`` of a dict; ValueError names the first wrong part. ``lot``: whether a player may be asked who begins."""
+    conditions = check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
@@ -202,7 +193,7 @@ def check_frame_state(
     if not rules.frames:
         return made
     frames, first_break = _check_match(state, frame, rules.frames)
-    return made._replace(frames=frames, first_break=first_break, best_of=rules.frames)
+    return made._replace(frames=frames, first_break=first_break)
 
 
 def _check_match(state, frame, best_of):

@@ -1,7 +1,7 @@
 """How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike), then
 ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table which[j]."""
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,14 @@ from ..game.in_hand import nearest_anywhere, nearest_place
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.cue_room import in_room, raise_cue
-from ..physics.engine import EventKind, Status
+from ..physics.engine import EventKind
 from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import EVENT, MAX_EVENTS, WHY, Shot, SimulationError
+from ..simulation import EVENT, MAX_EVENTS, Shot
 from ..simulation.count import count
 from . import discrete_actions
-from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
+from .box_actions import place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_PLACEMENT, A_SPEEDS, playable
 from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
 from .lines import new_work
@@ -38,9 +38,9 @@ MEANT = 13
 STRIKE_COLUMNS = MEANT + 5
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
-FIRST, TOUCHING, MOVED, DOWN, OFF, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = range(9)
-PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(9, 16)
-SEEN_COLUMNS = 16
+FIRST, DOWN, JUMPED, CLEAR_PATH, FULL_PATH, ATTEMPT = range(6)
+PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(6, 13)
+SEEN_COLUMNS = 13
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 
 
@@ -99,8 +99,7 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def played_in(intended, positions, on_table, cue_row, shot):
-    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; ``shot`` records
-    what was done."""
+    """The stroke that is ``intended``, its aim the cue's, as the cue has room for it; ``shot`` records what was done."""
     rails, most = cue_row[C_RAILS:], cue_row[C_MAX_OFFSET]
     played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
     for c in range(5):
@@ -110,8 +109,7 @@ def played_in(intended, positions, on_table, cue_row, shot):
 
 @kernel
 def strike_with(intended, struck, positions, on_table, cue_row, j, shots):
-    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. Where these took the cue's room, it
-    is raised once more."""
+    """Shot j: the cue ball ``struck`` with errors in place of ``intended``; where these took the cue's room, it is raised once more."""
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, cue_row[C_MAX_OFFSET])
     if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
@@ -154,17 +152,6 @@ def row_of(k, rows):
     return min(k, rows.shape[0] - 1)
 
 
-@kernel
-def _same_constants(k, before, cues, phys):
-    """Whether two tables have the same cue and constants."""
-    differ = 0
-    if phys.shape[0] > 1:
-        differ += cues[k, C_END_MASS] != cues[before, C_END_MASS]
-        for c in range(phys.shape[1]):
-            differ += phys[k, c] != phys[before, c]
-    return differ == 0
-
-
 @entry(
     what="the strokes of the environment",
     seconds=3,
@@ -174,7 +161,7 @@ def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
     shots, (options, cues, noise, phys), work = StruckArrays(*shots), packed, new_work()
-    solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
+    choice, mask_before, intended = -1.0, 0, (0.0, 0.0, 0.0, 0.0, 0.0)
     for j in range(which.shape[0]):
         k = which[j]
         a, p, on, cue_row = actions[k], positions[k], on_table[k], cues[row_of(k, cues)]
@@ -182,22 +169,18 @@ def address(which, actions, tables, shots, packed, fidelity):
         law = CueLaw(phys[row_of(k, phys)], cue_row[C_END_MASS], fidelity[0], fidelity[1], most, rails)
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
-            x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
+            x, y = place_of(a, options, anywhere)
             place(p, on, x, y, anywhere)
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
-            before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
-            new = new or not _same_constants(k, before, cues, phys)
-            if new or not _same_table(p, on, positions[before], on_table[before]):
-                if options[A_SPEEDS]:
-                    speeds = int(options[A_SPEEDS])
-                    chosen = solve_menu_stroke(int(a[0]), speeds, p, on, mask, law, work)
+            before, new = which[max(0, j - 1)], a[0] != choice or mask != mask_before
+            if new or phys.shape[0] > 1 or not _same_table(p, on, positions[before], on_table[before]):
+                choice, mask_before, speeds = a[0], mask, int(options[A_SPEEDS])
+                if speeds:
+                    intended = solve_menu_stroke(int(choice), speeds, p, on, mask, law, work)
                 else:
-                    chosen = discrete_actions.solve_choice(int(a[0]), p, on, mask, law, work)
-                solved[0], mask_before = a[0], mask
-                solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
-            intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
+                    intended = discrete_actions.solve_choice(int(choice), p, on, mask, law, work)
         else:
             intended = shot_of(a, p, on, mask, options, law, work)
         strike(intended, p, on, streams[k], cue_row, noise, j, shots)
@@ -205,8 +188,7 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has them too, and
-    whether it was a jump shot."""
+    """The facts (first, touching, moved, potted, off the table) of shot j, from the table before it; ``seen`` has some, and jumps."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
@@ -217,8 +199,7 @@ def see(j, shots, positions, on_table):
             down |= 1 << i
         elif shots.potted[j, i] == OFF_TABLE:
             off |= 1 << i
-    seen[FIRST], seen[TOUCHING], seen[MOVED], seen[DOWN], seen[OFF] = first, touching, moved, down, off
-    seen[JUMPED] = shots.aloft[j, CUE, 0] != 0.0
+    seen[FIRST], seen[DOWN], seen[JUMPED] = first, down, shots.aloft[j, CUE, 0] != 0.0
     return first, touching, moved, down, off
 
 
@@ -264,13 +245,6 @@ class ShotBuffers:
     def __len__(self) -> int:
         return len(self.duration)
 
-    def again(self, j: int, log: int, *, path: bool = False) -> "ShotBuffers":
-        """Work space for shot j alone, with that log: struck as before, ``r`` and ``here`` to be filled."""
-        one = ShotBuffers(1, log, path=path or self.segments.shape[1] > 0)
-        one.shots[0], one.seen[0], one.kicks[0] = shot, _, _ = self.shots[j], self.seen[j], self.kicks[j]
-        one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = shot[[VX, VY]], shot[[WX, WY, WZ]], shot[UZ]
-        return one
-
     def shot(self, j: int, table: Table, physics: Physics) -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
@@ -284,8 +258,7 @@ class ShotBuffers:
 
 
 def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool = False) -> None:
-    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each. Shots that are
-    played ``again`` count once."""
+    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each; ``again``: uncounted."""
     count(0 if again else m)
     table = rules.table
     buffers.enlarged = {}
@@ -298,27 +271,17 @@ def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool
     engine.run_batch(balls, aloft, setup, MAX_EVENTS, log, ends, 0, m)
 
 
-def run_again(
-    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
-) -> ShotBuffers:
-    """Play shot j, on table k, with a longer log in its own buffers; SimulationError if it does not help."""
-    one, status = buffers, buffers.status[j]
-    while status == Status.LOG_FULL:
-        one = buffers.again(j, 4 * one.log)
-        one.r[0], one.here[0] = positions, on_table
-        run(one, 1, rules, phys, again=True)
-        status = one.status[0]
-    if status != Status.OK:
-        raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
-    buffers.enlarged[j] = one
-    return one
+World: TypeAlias = tuple[Rules, Floats]
+"""The rules, and the packed constants of a table: one row."""
 
 
-def with_path(
-    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
+def play_again(
+    buffers: ShotBuffers, j: int, log: int, balls: tuple[Floats, Bools], world: World, path: bool = False
 ) -> ShotBuffers:
-    """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
-    one = buffers.again(j, buffers.log, path=True)
-    one.r[0], one.here[0] = positions, on_table
-    run(one, 1, rules, phys, again=True)
+    """Play shot j once more, uncounted, in its own buffers with that log; with its path if ``buffers`` or ``path`` say so."""
+    one, shot = ShotBuffers(1, log, path=path or buffers.segments.shape[1] > 0), buffers.shots[j]
+    one.shots[0], one.seen[0], one.kicks[0] = shot, buffers.seen[j], buffers.kicks[j]
+    one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = shot[[VX, VY]], shot[[WX, WY, WZ]], shot[UZ]
+    one.r[0], one.here[0] = balls
+    run(one, 1, *world, again=True)
     return one

@@ -11,31 +11,20 @@ from ..game import frame_columns as columns
 from ..game.balls import bits
 from ..game.pots import POT_COLUMNS
 from ..physics.cue import squirt
+from . import lines
 from .box_actions import FASTEST, MOST_TOP, SLOWEST
 from .declarations import A_DECISION, A_SPEEDS
 from .discrete_actions import Choices
-from .lines import (
-    LINE_ROWS,
-    POTS,
-    SAFE_LINES,
-    aim_along,
-    aim_on,
-    break_off,
-    count_lines,
-    end_red_of_rack,
-    find_safe_lines,
-    list_lines,
-)
 
 SPEEDS = 9
 """Cue speeds along each pot, by default."""
 LEAST_SPEEDS, MOST_SPEEDS = 2, 20
 TOPS = (-MOST_TOP, 0.0, MOST_TOP)
 """The tip offsets at pots, over R, upwards."""
-PER_SPEED = POTS * len(TOPS)  # strokes at pots of each cue speed
+PER_SPEED = lines.POTS * len(TOPS)  # strokes at pots of each cue speed
 SAFE_SPEEDS, SAFE_TOPS = (0.8, 1.4, 2.2, 3.4), (-0.3, 0.15)  # the same of safeties
 SAFE_ALONG = len(SAFE_SPEEDS) * len(SAFE_TOPS)
-SAFETIES = SAFE_LINES * SAFE_ALONG
+SAFETIES = lines.SAFE_LINES * SAFE_ALONG
 DECISIONS = 2
 """Choices after the strokes of a frame: the offender plays again; from the position before, or the striker from anywhere."""
 
@@ -52,44 +41,38 @@ def speeds_of(choices: int, frame: bool) -> int:
 
 
 @kernel
-def cue_speed(level, speeds):
-    """The cue speed at pots number ``level`` [m/s]: from ``SLOWEST`` to ``FASTEST`` in equal ratios."""
-    return SLOWEST * (FASTEST / SLOWEST) ** (level / (speeds - 1))
-
-
-@kernel
 def menu_stroke(index, speeds):
-    """(line, speed, side, top) of the stroke ``index`` at pots."""
+    """(line, speed, side, top) of the stroke ``index`` at pots, with speeds in equal ratios."""
     line, along = index // (speeds * len(TOPS)), index % (speeds * len(TOPS))
-    return line, cue_speed(along // len(TOPS), speeds), 0.0, TOPS[along % len(TOPS)]
+    speed = SLOWEST * (FASTEST / SLOWEST) ** ((along // len(TOPS)) / (speeds - 1))
+    return line, speed, 0.0, TOPS[along % len(TOPS)]
 
 
-@kernel(seconds=1, uses=(aim_along,))
-def safe_stroke(safety, end_red, lines, positions, on_table, on, law, work):
-    """(speed, side, top, direction) of the ``safety``, along rows of ``find_safe_lines``; the break-off is the first."""
+@kernel(seconds=1, uses=(lines.aim_along,))
+def safe_stroke(safety, end_red, rows, positions, on_table, on, law, work):
+    """(speed, side, top, direction) of the ``safety``, along ``rows`` of ``find_lines``; the break-off is the first."""
     if safety == 0 and end_red > 0:
-        return break_off(positions, end_red)
+        return lines.break_off(positions, end_red)
     along = safety % SAFE_ALONG
     speed, side, top = SAFE_SPEEDS[along // len(SAFE_TOPS)], 0.0, SAFE_TOPS[along % len(SAFE_TOPS)]
     line = safety // SAFE_ALONG
-    aim = aim_along(lines[line], (speed, side, top, 0.0), positions, on_table, on, law, work)
+    aim = lines.aim_along(rows[line], (speed, side, top, 0.0), positions, on_table, on, law, work)
     return speed, side, top, aim
 
 
-@kernel(seconds=1, uses=(aim_on, safe_stroke))
+@kernel(seconds=1, uses=(lines.aim_on, safe_stroke))
 def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
-    """(speed, side, top, aim, elevation) of the choice ``index``; if that is not there, of the same stroke along the last line
-    that is, or, for a decision, of the last stroke."""
+    """(speed, side, top, aim, elevation) of the choice ``index``; of one that is not there, along the last line that is."""
     safety = min(index - speeds * PER_SPEED, SAFETIES - 1)
     if safety < 0:
         line, speed, side, top = menu_stroke(index, speeds)
-        many, pots = list_lines(positions, on_table, on, work.lines)
+        many, pots = lines.list_lines(positions, on_table, on, work.lines)
         stroke = speed, side, top, 0.0
-        aim = aim_on(min(line, many - 1), pots, stroke, positions, on_table, on, law, work)
+        aim = lines.aim_on(min(line, many - 1), pots, stroke, positions, on_table, on, law, work)
     else:
-        many = find_safe_lines(positions, on_table, on, work.lines)
+        many = lines.find_lines(positions, on_table, on, work.lines, True)
         safety -= max(0, safety // SAFE_ALONG - many + 1) * SAFE_ALONG
-        end_red = end_red_of_rack(positions, on_table)
+        end_red = lines.end_red_of_rack(positions, on_table)
         speed, side, top, aim = safe_stroke(safety, end_red, work.lines, positions, on_table, on, law, work)
     return speed, side, top, aim - squirt(side, law.end_mass_ratio), 0.0
 
@@ -104,16 +87,16 @@ def decisions_of(row, rules):
 @entry(what="the menus of strokes", seconds=1)
 def menu_masks(which, positions, on_table, game, speeds, rules, out):
     """The strokes on the menus of the tables ``which``: bool, one row of ``out`` each; ``rules``: the code of the rule set."""
-    rows, at_pots = np.empty((LINE_ROWS, POT_COLUMNS)), speeds * PER_SPEED
+    rows, at_pots = np.empty((lines.LINE_ROWS, POT_COLUMNS)), speeds * PER_SPEED
     last = at_pots + SAFETIES
     for j in range(which.shape[0]):
         k, many, safe = which[j], 1, 1
         p, here = positions[k], on_table[k]
         on = columns.strikeable(game[k], bits(here))
         if here[0]:
-            many = count_lines(p, here, on, rows)
+            many = lines.count_lines(p, here, on, rows)
             if out.shape[1] > at_pots:
-                safe = find_safe_lines(p, here, on, rows)
+                safe = lines.find_lines(p, here, on, rows, True)
         for c in range(out.shape[1]):
             out[j, c] = c < many * speeds * len(TOPS) if c < at_pots else c < at_pots + SAFE_ALONG * safe
         if out.shape[1] > last:

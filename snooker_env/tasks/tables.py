@@ -7,16 +7,18 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
+from .._lib.check import refuse
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
-from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
-from ..game.frame_columns import BALL_ON, IN_HAND, OVER
+from ..game.balls import COLOURS_MASK, N_BALLS, BallOn, balls_on, mask_of_present
+from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER
 from ..game.philox import pair, stream_of
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, draw_constants, scale_to_unit
 from ..physics.conditions import NAMES as CONDITION_NAMES
+from ..physics.events import Status
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
-from ..simulation.shot import Shot
+from ..simulation import WHY, Shot, SimulationError
 from . import discrete_actions, stroke
 from .box_actions import Actions
 from .discrete_actions import Choices
@@ -103,9 +105,8 @@ class StepOutput:
         self.counts: Ints = np.zeros((n, counts), np.int64)
         # the same of the episodes that ended where new ones were started; else without rows
         m = n if last else 0
-        self.last_observations: Singles = np.zeros((m, size), np.float32)
-        self.last_reals: Floats = np.zeros((m, reals))
-        self.last_counts: Ints = np.zeros((m, counts), np.int64)
+        infos = np.zeros((m, reals)), np.zeros((m, counts), np.int64)
+        self.last: tuple[Singles, Floats, Ints] = (np.zeros((m, size), np.float32), *infos)
         # the available choices, likewise; without rows unless the observations hold them
         self.masks: Masks = np.zeros((n if choices else 0, choices), np.int8)
         self.last_masks: Masks = np.zeros((m if choices else 0, choices), np.int8)
@@ -115,10 +116,10 @@ class StepOutput:
         """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
         return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
 
-    @property
-    def last(self) -> tuple[Singles, Floats, Ints]:
-        """The arrays that keep the end of an episode where another one starts."""
-        return self.last_observations, self.last_reals, self.last_counts
+    def keep_masks(self, ended: Ints) -> None:
+        """Keep the masks of the tables ``ended`` as they lie, before the next episode."""
+        if len(self.last_masks):
+            self.last_masks[ended] = self.masks[ended]
 
 
 class Crew:
@@ -143,8 +144,6 @@ class Crew:
 
 
 _T = TypeVar("_T", bound="Tables")
-STROKES_ONLY = Choices().pack()
-"""Packed options of discrete actions that only choose a stroke, for tables whose own actions are a box."""
 
 
 class Tables(ABC):
@@ -166,6 +165,8 @@ class Tables(ABC):
     streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
+    actions: tuple[Actions | Choices, ...]  # of each seat, as the next
+    noises: tuple[Noise, ...]
     cues: Floats  # packed: one row, or one a table if the conditions are drawn
     phys: Floats  # packed constants, likewise
     conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
@@ -181,6 +182,7 @@ class Tables(ABC):
         self.conditions = np.empty((0, CONDITIONS))
         options, self.cues, errors, self.phys = rules.pack()
         # of each seat
+        self.actions, self.noises = (rules.actions,), (rules.noise,)
         self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics, rules.speeds),)
         self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)
         if rules.drawn:
@@ -206,12 +208,10 @@ class Tables(ABC):
 
     def output(self, *, last: bool = False) -> StepOutput:
         """New arrays for the results of a step or reset."""
-        nobody = np.empty(0, np.int64)
-        choices = self.action_masks(nobody).shape[1] if self.rules.observation == "masked" else 0
+        shown = self.actions[0] if self.rules.observation == "masked" else None
+        choices = shown.choices if isinstance(shown, Choices) else 0
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
-        out = StepOutput(*sizes, last=last, choices=choices)
-        self.show_conditions(slice(None), out)
-        return out
+        return StepOutput(*sizes, last=last, choices=choices)
 
     def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
@@ -236,51 +236,50 @@ class Tables(ABC):
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        shot, who = self.shot(k, buffers, j), self.noise_of(seen[stroke.PLAYER])
-        own = {"shot": shot, "cue_kind": self.rules.cue, "noise": who}
+        noise = self.noises[min(seen[stroke.PLAYER], len(self.noises) - 1)]  # alone, the agent has both turns
+        own = {"shot": self.shot(k, buffers, j), "cue_kind": self.rules.cue, "noise": noise}
         return Played(**own, **balls, **after, **fields_of(buffers, j), **standing)
-
-    def noise_of(self, player: int) -> Noise:
-        """The errors of a player."""
-        return self.rules.noise
 
     def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
         """Shot j of the buffers, played on table k."""
         return buffers.shot(j, self.rules.table, self.physics_of(k))
 
     def on(self, k: int) -> int:
-        """The mask of the balls that may be struck first on table k."""
-        return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
+        """The mask of the balls that may be struck first on table k; with a free ball every colour."""
+        row, mask = self.game[k], mask_of_present(self.on_table[k])
+        free = COLOURS_MASK & mask if self.COLUMNS > FREE_BALL and row[FREE_BALL] else 0
+        return balls_on(int(row[BALL_ON]), mask) | free
 
-    def action_masks(self, which: Ints | None = None) -> Bools:
-        """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
+    def action_masks(self, which: Ints | None = None, side: int = 0) -> Bools:
+        """The choices of the seat ``side`` on the tables ``which`` (all if None): bool (len(which), choices); ValueError for a Box."""
         which = np.arange(self.n) if which is None else which
-        return self.masks_of(which, self.rules.actions)
-
-    def masks_of(self, which: Ints, actions: Actions | Choices) -> Bools:
-        """``action_masks`` of one space of actions."""
-        choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
-        out = np.empty((len(which), choices), np.bool_)
+        actions, balls = self.actions[side], (self.positions, self.on_table, self.game)
+        if not isinstance(actions, Choices):
+            raise refuse("action", "box", 'must be "discrete" or "strokes": a Box has no masks')
+        out = np.empty((len(which), actions.choices), np.bool_)
         if isinstance(actions, Menu):
-            code = self.rules.rule_set.code
-            menu_masks(which, self.positions, self.on_table, self.game, actions.speeds, code, out)
-            return out
-        reads = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY, self.rules.cue_row
-        discrete_actions.masks(which, self.positions, self.on_table, self.game, *reads, out)
+            menu_masks(which, *balls, actions.speeds, self.rules.rule_set.code, out)
+        else:
+            discrete_actions.masks(which, *balls, actions.pack(), self.rules.cue_row, out)
         return out
 
-    def show_masks(self, which: Ints, masks: Masks) -> None:
-        """Write the available choices of the tables ``which`` into ``masks``; nothing if it has no rows."""
-        if len(masks) and len(which):
-            masks[which] = self.action_masks(which)
+    def show_rest(self, which: Ints, out: StepOutput) -> None:
+        """Write what the kernels leave of the results for the tables ``which``: strokes foreseen, constants, masks."""
+        self.observe_rest(which, which, out.observations)
+        if self.rules.drawn:
+            out.reals[which, -CONDITIONS:] = self.conditions[which]
+        if len(out.masks):
+            out.masks[which] = self.action_masks(which)
 
-    def show_strokes(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
-        """With ``observation="strokes"`` write what ``player`` foresees of the menus of the tables ``which`` into ``rows[at]``."""
+    def observe_rest(self, which: Ints, at: Ints, rows: Singles, player: int = 0) -> None:
+        """Write what they leave of the observations of ``player`` on the tables ``which`` into ``rows[at]``."""
         if self.rules.observation == "strokes":
             tables = self.positions, self.on_table, self.game
             law = self.rules.rule_set.code, self.cues, self.phys, *self.rules.fidelity
             errors = self._errors[min(player, len(self._errors) - 1)]
             foresee(which, at, player, tables, law, errors, rows)
+        if self.rules.observed:
+            rows[at, -CONDITIONS:] = scale_to_unit(self.conditions[which])
 
     def are_over(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""
@@ -318,20 +317,13 @@ class Tables(ABC):
         pack_into(self.phys, which, values, self.rules.physics)
         self.cues[which, C_END_MASS] = values[:, END_MASS_RATIO]
 
-    def show_conditions(self, which: Ints | slice, out: StepOutput) -> None:
-        """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
-        if self.rules.drawn:
-            out.reals[which, -CONDITIONS:] = self.conditions[which]
-        if self.rules.observed:
-            out.observations[which, -CONDITIONS:] = scale_to_unit(self.conditions[which])
-
     def physics_of(self, k: int) -> Physics:
         """The constants of table k."""
         physics = self.rules.physics
         return physics_with(physics, self.conditions[k]) if self.rules.drawn else physics
 
-    def world(self, k: int) -> tuple[Rules, Floats]:
-        """The rules, and the packed constants of table k: one row."""
+    def world(self, k: int) -> stroke.World:
+        """What shots on table k are played with."""
         return self.rules, self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
 
     def _columns(self) -> tuple[str, ...]:
@@ -356,9 +348,16 @@ class Tables(ABC):
         return np.flatnonzero(status).tolist() if status.any() else []
 
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
-        """Play shot j once more with a longer log; returns its own buffers."""
-        k = which[j]
-        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], *self.world(k))
+        """Play shot j with a longer log in its own buffers, returned; SimulationError if it does not help."""
+        k, one, status = which[j], buffers, buffers.status[j]
+        balls = self.positions[k], self.on_table[k]
+        while status == Status.LOG_FULL:
+            one = stroke.play_again(buffers, j, 4 * one.log, balls, self.world(k))
+            status = one.status[0]
+        if status != Status.OK:
+            raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
+        buffers.enlarged[j] = one
+        return one
 
     # what each task implements
 

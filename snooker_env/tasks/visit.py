@@ -14,21 +14,10 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_CO
 from ..game.layouts import deal_tables
 from ..game.pots import POT_COLUMNS
 from ..geometry import BALL_RADIUS
-from ..physics.conditions import COLUMNS as CONDITIONS
-from ..physics.conditions import scale_to_unit
 from ..physics.engine import Status
+from . import observations
 from .kernel_arrays import C_RAILS, OutputArrays, PlayedArrays
 from .lines import POTS
-from .observations import (
-    POTS_SIZE,
-    SHOWN_SPEED,
-    SIZE,
-    STATE_ENTRIES,
-    STROKE_SIZE,
-    View,
-    observe_into,
-    observe_pots_into,
-)
 from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
@@ -45,16 +34,16 @@ def _observe(out, positions, on_table, state, view, pots):
     on = balls_on_kernel(state[BALL_ON], bits(on_table))
     seen = positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS]
     if view.pots:
-        observe_pots_into(out, *seen, view, pots)
+        observations.observe_pots_into(out, *seen, view, pots)
     else:
-        observe_into(out, *seen)
+        observations.observe_into(out, *seen)
 
 
 @entry(what="the referee of visits", seconds=4)
 def _conclude(which, positions, on_table, game, shots, rules, view, output):
     """Judge the shots that came to rest, write all results. ``rules``: reward, limit of steps, one stroke."""
     shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
@@ -81,7 +70,7 @@ def _conclude(which, positions, on_table, game, shots, rules, view, output):
 def _begin(which, fresh, in_hand, tables, view, output, last):
     """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         mask, state = bits(on_table[k]), game[k]
@@ -97,7 +86,7 @@ def _begin(which, fresh, in_hand, tables, view, output, last):
 @entry
 def observe(which, positions, on_table, game, view, out):
     """The observations of the tables ``which``: one row of ``out`` each."""
-    view, pots = View(*view), np.empty((POTS, POT_COLUMNS))
+    view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         _observe(out[j], positions[k], on_table[k], game[k], view, pots)
@@ -109,11 +98,13 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
-        menu = STROKE_SIZE * menu_size(rules.speeds, False) + len(STATE_ENTRIES)
-        self.SIZE = {"pots": POTS_SIZE, "strokes": menu}.get(rules.observation, SIZE)
+        menu = observations.STROKE_SIZE * menu_size(rules.speeds, False) + len(observations.STATE_ENTRIES)
+        sizes = {"pots": observations.POTS_SIZE, "strokes": menu}
+        self.SIZE = sizes.get(rules.observation, observations.SIZE)
         super().__init__(rules, n, limit=limit)
-        spread, rails = rules.noise.spread(rules.physics, speed=SHOWN_SPEED), rules.cue_row[C_RAILS:]
-        self._view: View = View(rules.observation == "pots", spread, rails)
+        spread = rules.noise.spread(rules.physics, speed=observations.SHOWN_SPEED)
+        pots, rails = rules.observation == "pots", rules.cue_row[C_RAILS:]
+        self._view: observations.View = observations.View(pots, spread, rails)
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
@@ -128,12 +119,10 @@ class Visits(Tables):
                 crew.saw(playing, buffers, True)
             if same_step:
                 ended = which[out.terminated[which] | out.truncated[which]]
-                # of the table as it lies, before the next one is dealt
-                self.show_masks(ended, out.last_masks)
+                out.keep_masks(ended)
                 self._begin(ended, out)
             elif anew:
                 self._begin(which[waiting[which]], out)
-            self.show_masks(which, out.masks)
 
         crew(np.arange(self.n), play)
 
@@ -148,7 +137,7 @@ class Visits(Tables):
         rules = REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke
         tables = self.positions, self.on_table, self.game
         _conclude(which, *tables, b.played, rules, self._view, out.arrays)
-        self.show_strokes(which, which, out.observations)
+        self.show_rest(which, out)
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
@@ -157,15 +146,13 @@ class Visits(Tables):
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
                 self.draw_conditions(which)
             _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays, out.last)
-            self.show_strokes(which, which, out.observations)
-            self.show_conditions(which, out)
+            self.show_rest(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
             self._begin(which[~wanted[which]], out, fresh=False)
-            self.show_masks(which, out.masks)
 
         self.begun[wanted] = True
         crew(np.arange(self.n), begin)
@@ -173,9 +160,7 @@ class Visits(Tables):
     def observe(self, which: Ints, player: int = 0) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, self._view, rows)
-        self.show_strokes(which, np.arange(len(which)), rows)
-        if self.rules.observed:
-            rows[:, -CONDITIONS:] = scale_to_unit(self.conditions[which])
+        self.observe_rest(which, np.arange(len(which)), rows)
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:

@@ -271,7 +271,7 @@ class Other:
 def test_a_frame_between_two_players_goes_as_against_an_opponent(kind, monkeypatch):
     """The observations, sums of rewards, ends and infos of player 0 are those of the agent of ``SnookerEnv``."""
     pytest.importorskip("pettingzoo")
-    monkeypatch.setattr("snooker_env.tasks.frames.carry_out", Frames.prepare)
+    monkeypatch.setattr(Frames, "carry_out", Frames.prepare)
     flat = {"observation": "flat"} if kind == "masks" else {}  # masks of who waits are zero in a match alone
     options, answered = {"task": "frame"} | PAIRS[kind] | flat, 0
     for seed in range(6):

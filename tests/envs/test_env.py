@@ -145,7 +145,7 @@ def test_rendering_gives_what_the_mode_says_and_changes_nothing(mode, kind, scre
     assert isinstance(second, kind) and (mode == "human" or not np.array_equal(first, second))
     assert data_equivalence(env.get_state(), blind.get_state(), exact=True)
     if mode == "human":
-        assert len(screen) == 1 and screen[0][0] > 20 and screen[0][1] == SnookerEnv.metadata["render_fps"]
+        assert len(screen) == 1 and screen[0][0] > 20 and screen[0][1] == 30
 
 
 def test_options_are_checked_once_and_taken_by_every_environment():

@@ -91,6 +91,7 @@ matches(seats=({}, {"layout": "line_up"})) | key of seats[1] | 'layout' | must b
 matches(seats=({"noise": "club"}, {"noise": "xx"})) | seats[1].noise | 'xx' | must be
 matches(seats=({"cue": "real"}, {})) | key of seats[0] | 'cue' | must be one of 'action'
 matches(seats=({}, CONCEDES), action="discrete", observation="masked") | seats | concede | must give both players
+matches(seats=({}, {"action": "discrete"})) | seats | discrete | must give both players the same actions
 matches(opponent="random") | options | opponent='random' | a match has two players
 matches(autoreset_mode=?) | autoreset_mode | ? | must be | 'SameStep'
 matches(one_stroke=?) | options | one_stroke=? | a match has two players | True

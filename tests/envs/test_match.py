@@ -9,7 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.tasks import observations
 from tests.processes import ROOT, python
-from tests.tables import PLACES, begun, frame_state, plain
+from tests.tables import PLACES, frame_state, plain
 
 pytest.importorskip("pettingzoo")
 from pettingzoo.test import api_test, seed_test
@@ -95,7 +95,10 @@ def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
 
 
 def test_tables_that_have_ended_stand_still_until_they_are_reset():
-    tables = begun(sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win"), 0)
+    tables = sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win")
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        tables.step(np.zeros((4, 7)))
+    tables.reset(seed=0)
     for _ in range(6):
         out = tables.step(np.tile([-0.9, 0, 0, 0.5, 0, 0, 0], (4, 1)))
     assert out[3].all()
@@ -107,11 +110,3 @@ def test_tables_that_have_ended_stand_still_until_they_are_reset():
     assert infos["_strokes"].tolist() == [True, False, False, True]
     assert tables.strikers[[0, 3]].tolist() == [1, 1]
     assert tables.step(np.zeros((4, 7)))[3].tolist() == [False, True, True, False]
-
-
-def test_a_reset_is_needed_and_actions_are_one_array_a_seat():
-    tables = sn.MatchVectorEnv(2, threads=1)
-    with pytest.raises(gymnasium.error.ResetNeeded):
-        tables.step(np.zeros((2, 7)))
-    with pytest.raises(ValueError, match="must be two arrays"):
-        sn.MatchVectorEnv(2, seats=({}, {"action": "discrete"}), threads=1).step(np.zeros((2, 7)))

@@ -76,7 +76,7 @@ def check_table(env, before, info):
     gaps = np.hypot(*(places[:, None] - places[None]).transpose(2, 0, 1))[np.triu_indices(len(places), 1)]
     assert np.isfinite(env.positions).all()
     assert gaps.size == 0 or gaps.min() >= 2 * R - 1e-6
-    env.table.check(env.positions, R, on_table=here)
+    env.options.rules.table.check(env.positions, R, on_table=here)
     assert env.points <= 155
     lost = before & ~here
     assert not (here & ~before)[1:].any()

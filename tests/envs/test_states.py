@@ -112,8 +112,6 @@ def test_the_state_of_a_respotted_black_that_the_frame_began_without_is_taken(se
 
 
 # What a call is given is left as it is, neither written into, repaired nor kept
-
-
 Z = (0.0, 0.0, 0.0)
 
 
@@ -167,7 +165,11 @@ def test_what_an_environment_is_given_is_left_as_it_is_and_not_kept():
     options = {"state": copy.deepcopy(state)}
     env.reset(options=options)
     assert options == {"state": state} and physics == {"preset": "match", "mu_s": 0.2}
-    assert noise == {"aim_deg": 0.1} and env.physics.mu_s == 0.2 and env.noise == Noise(aim_deg=0.1)
+    assert (
+        noise == {"aim_deg": 0.1}
+        and env.physics.mu_s == 0.2
+        and env.options.rules.noise == Noise(aim_deg=0.1)
+    )
     positions, here = np.array(state["positions"]), np.array(state["on_table"])
     env.set_state(state | {"positions": positions, "on_table": here})
     before = positions.copy()

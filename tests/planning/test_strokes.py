@@ -8,7 +8,7 @@ from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pot_aim, pots
 from snooker_env.planning.strokes import decode
 from snooker_env.players import VISITS
-from snooker_env.tasks.carry_out import sayings
+from snooker_env.tasks.frames import sayings
 from tests.positions import tables
 
 DISCRETE = {"action": "discrete"}

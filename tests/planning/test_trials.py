@@ -8,7 +8,6 @@ from snooker_env.game.sides import swap_sides
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.trials import FrameTrials, turn_to_striker
 from snooker_env.players import Strokes
-from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frames import Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.threads import Threads
@@ -36,7 +35,7 @@ def frames_in_play(n, options, strokes, seed=0):
 def play(tables, values, crew):
     """One turn of the strikers with these strokes (n, 5)."""
     parts = Strokes(values).parts
-    tables.turn(lambda which, b: carry_out(tables, which, parts, b, 0), tables.output(), crew)
+    tables.turn(lambda which, b: tables.carry_out(which, parts, b, 0), tables.output(), crew)
 
 
 def random_strokes(n, rng):

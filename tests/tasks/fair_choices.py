@@ -6,7 +6,6 @@ from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.pots import pots
 from snooker_env.players.opponents import opponent_of
 from snooker_env.tasks import CHOICES, MAX_SPEED, MIN_SPEED, SPEEDS
-from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.frames import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ShotBuffers
@@ -55,7 +54,7 @@ def positions_of_frames(n, seed):
             buffers, out = ShotBuffers(len(which)), tables.output()
             crew = Crew(buffers)
             asked = player.strokes(tables, which, crew)
-            struck = carry_out(tables, which, asked, buffers, AGENT)
+            struck = tables.carry_out(which, asked, buffers, AGENT)
             tables.complete(struck, out, buffers, crew, reported=True)
             which = which[~tables.are_over()[which]]
         seed += 1

@@ -9,7 +9,6 @@ from snooker_env.game.balls import CUE
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
 from snooker_env.players.opponents import opponent_of
-from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.escapes import _REBOUND
 from snooker_env.tasks.frames import AGENT, Frames, Seat
 from snooker_env.tasks.options import Options
@@ -35,7 +34,8 @@ def turn(tables, which=None):
     buffers, out = ShotBuffers(len(which)), tables.output()
     crew = Crew(buffers)
     asked = tables.seats[AGENT].player.strokes(tables, which, crew)
-    tables.complete(carry_out(tables, which, asked, buffers, AGENT), out, buffers, crew, reported=True)
+    struck = tables.carry_out(which, asked, buffers, AGENT)
+    tables.complete(struck, out, buffers, crew, reported=True)
     return out.counts[which, I_FOULS], out.reals[which, I_POINTS], buffers
 
 

@@ -76,7 +76,7 @@ def test_reset_says_who_breaks_on_many_tables_and_in_a_match():
     tables = sn.SnookerVectorEnv(4, task="match", opponent="ghost_ball", threads=1)
     for breakers in (1, [0, 1, 1, 0], np.array([1, 0, 1, 0])):
         tables.reset(seed=3, options={"breaker": breakers})
-        assert [frame.breaker for frame in tables.call("frame")] == np.broadcast_to(breakers, 4).tolist()
+        assert [tables.tables.frame(k).breaker for k in range(4)] == np.broadcast_to(breakers, 4).tolist()
     pytest.importorskip("pettingzoo")
     match = sn.match_env()
     for breaker in (0, 1):

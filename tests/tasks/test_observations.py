@@ -5,7 +5,7 @@ import pytest
 
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
-from snooker_env.tasks import table_fit
+from snooker_env.tasks import observations
 from tests.refusals import refused
 from tests.tables import INFO, drawn, table_state
 
@@ -112,8 +112,8 @@ def test_a_ball_at_rest_in_the_mouth_of_a_pocket_is_seen_where_it_lies(kind, sid
 
 def test_a_table_with_deeper_mouths_than_observations_reach_is_refused(monkeypatch):
     """On snooker's own table a ball can rest 11 mm past the noses."""
-    monkeypatch.setattr(table_fit, "REACH", 1.014)
+    monkeypatch.setattr(observations, "REACH", 1.014)
     SnookerEnv(table="match")
-    monkeypatch.setattr(table_fit, "REACH", 1.012)
+    monkeypatch.setattr(observations, "REACH", 1.012)
     ends = "past the noses, where observations end (one can 0.0117 m"
     refused(lambda: SnookerEnv(table="match"), "table", "match", ends)

@@ -14,7 +14,6 @@ from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import OpponentPool, SeenPlayer, Strokes
 from snooker_env.players.opponents import opponent_of
-from snooker_env.tasks.carry_out import carry_out
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import Crew
@@ -58,7 +57,7 @@ def asked(env):
     """The opponent's turn on the first table, up to the strike: (its buffers, the tables with a stroke)."""
     one, opponent, buffers = np.zeros(1, np.int64), env.tables.seats[1].player, ShotBuffers(1)
     strokes = opponent.strokes(env.tables, one, Crew(buffers))
-    return buffers, carry_out(env.tables, one, strokes, buffers, 1).tolist()
+    return buffers, env.tables.carry_out(one, strokes, buffers, 1).tolist()
 
 
 def test_a_player_sees_the_frame_as_the_striker():

@@ -22,11 +22,7 @@ from snooker_env.planning import (
 )
 from snooker_env.planning import pots as direct_pots
 from snooker_env.tasks import choice_of
-from snooker_env.tasks.discrete_actions import (
-    SIDES,
-    SPEEDS,
-    TOPS,
-)
+from snooker_env.tasks.discrete_actions import SIDES, SPEEDS, TOPS
 from snooker_env.tasks.noise import TWICE, Spread
 from tests.kernels import from_python
 from tests.tables import table_state

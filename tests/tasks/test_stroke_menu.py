@@ -13,7 +13,7 @@ from snooker_env.planning.aims import Dynamics, law_of
 from snooker_env.tasks import LEVELS, cue_ball_path
 from snooker_env.tasks.noise import TWICE, Noise, Spread
 from snooker_env.tasks.observations import BALLS_SIZE, STROKE_ENTRIES
-from snooker_env.tasks.pot_chance import pot_chances
+from snooker_env.tasks.pot_chance import chance_at
 from tests.positions import tables
 
 SPEEDS, TOPS = [0.8 * (4.6 / 0.8) ** (k / 8) for k in range(9)], (-0.4, 0.0, 0.4)
@@ -43,7 +43,7 @@ def wanted_of(at, options, pot, index):
     core = np.radians(noise.direction_deg(rules.physics, speed=speed)) * (1.0 + played[4] / TWICE)
     spread = Spread(core, noise.lapse, noise.lapse_factor)
     length = np.hypot(*(ghost[0] - at.positions[0, 0])) + np.hypot(*(to[0] - at.positions[0, ball[0]]))
-    (chance,) = pot_chances(pot.tolerance[:, line], np.array([length]), spread)
+    chance = chance_at(pot.tolerance[0, line], length, spread)
     out = np.empty((1, cue_ball_path.SEEN))
     left = (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int))
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])

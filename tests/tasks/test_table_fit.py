@@ -12,7 +12,7 @@ from snooker_env import SnookerEnv, SnookerVectorEnv, Table
 from snooker_env.game.banks import bank, split_bank
 from snooker_env.game.layouts import LAYOUTS, deal_tables
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.tasks.table_fit import fit_plan
+from snooker_env.tasks.options import fit_plan
 from tests.refusals import refused
 from tests.tables import begun
 
