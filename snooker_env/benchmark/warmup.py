@@ -116,7 +116,8 @@ def _ask_rules(env: "SnookerEnv") -> None:
 def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     """Planning, players and advice."""
     from ..advice.room import room_for
-    from ..planning import Planner, Positions, clear_paths, obstructions, pots, prospects_of
+    from ..planning import Planner, Positions, clear_paths, pots, prospects_of
+    from ..planning.pot_geometry import obstructions
     from ..planning.proposals import at_balls, over_cushions
     from ..planning.visit_judge import VisitJudge
     from ..planning.worth import best_places, decide
@@ -130,7 +131,7 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     planner.play(at, [0], [0])
     planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
     Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
-    obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+    obstructions(at, np.zeros(1, np.int64), np.zeros((1, 2)), np.ones((1, 2)), np.zeros((1, 1), np.int64))
     room_for(np.zeros(5), at, Options(cue="real").rules)
     prospects_of(at, Spread(1e-3))
     pot_chances(np.ones(1), np.ones(1), Spread(1e-3))

@@ -15,7 +15,7 @@ from ..game.rule_sets import RULES
 from ..physics.table import Table
 from ..planning import Positions
 from ..play.service import OFFERED, BusyError
-from ..players.requests import STROKE
+from ..players.cue_stroke import STROKE
 from ..render.pygame_balls import BOLD, pygame_, typeset
 from ..render.pygame_view import View, draw
 from ..render.scene import scene

@@ -1,40 +1,24 @@
 """What is a stroke of a frame worth? Pots, safeties and escapes are judged alike, by the points that they bring and the
-worth of what they leave to the next player (``worth``), and by the chance to win that follows.
+worth of what they leave to the next player (``worth``), and by the chance to win that follows."""
 
-The budget goes where the decision is hard. Where a pot is likely (``EASY``), few pots are looked at; elsewhere more
-pots, several times as many safeties, and escapes where hardly anything is seen."""
-
-from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from .._lib.check import refuse_what
-from .._lib.types import Bools, Environment, Floats, Ints
+from .._lib.types import Bools, Floats, Ints
 from ..game import frame_columns as columns
-from ..tasks.noise import Noise, Spread
-from ..tasks.options import Options, Rules
 from ..tasks.threads import Threads, processors
-from .aims import Dynamics
-from .planner import options_in
+from . import worth as worths
+from .planner import RulesLike, options_in
 from .positions import Positions
 from .pot_geometry import clear_paths
 from .proposals import Proposals, at_balls, over_cushions, safeties
-from .search import BUDGET, Plan, Proposed, Search
+from .search import BUDGET, Judge, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 from .trials import FrameTrials, turn_to_striker
-from .worth import (
-    FOUL,
-    LAST,
-    Chance,
-    Worth,
-    follows,
-    in_one_stroke,
-    last_of,
-    lead_of,
-    left_of,
-    pass_after_miss,
-)
+from .worth import FOUL, LAST, Chance, Worth, lead_of, left_of, pass_after_miss
 
 Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 """What strokes (m, 5) without a pot in ``at[rows]`` promise under so many errors, without a simulated shot: (m,) [points]."""
@@ -43,40 +27,35 @@ FORESEEN, AGAIN, KEPT = 8, 2.5, 0.8
 """Of safeties, for each that is looked at: how many are foreseen without error, and of these how many under several; the
 share of the looks that goes to those that promise most, the others come as they are."""
 SURE_OF = 4  # errors under which these are foreseen
-HIDES = 0.3
-"""How likely the other is to foul in a snooker that the striker needs."""
+HIDES = 0.3  # how likely the other is to foul in a snooker that the striker needs
 EASY = 0.9  # chance of the likeliest pot by its width from which a decision is easy
-TIE = 2e-4
-"""What a point counts beside the chance to win, so that a frame that is won or lost is still played well."""
+TIE = 2e-4  # what a point counts beside the chance to win: a frame that is won or lost is still played well
 PLANS = Plan((44, 0, 0, 0), ((7, 2), (3, 7))), Plan((24, 40, 16, 24), ((20, 4), (7, 8)))
-"""Where the decision is easy, and where it is hard, with ``BUDGET`` shots on average: looks at pots, safeties, contacts and
-escapes."""
+"""Looks at pots, safeties, contacts and escapes where the decision is easy, and where it is hard; ``BUDGET`` on average."""
 
 
 def scale(plan: Plan, share: float) -> Plan:
     """The same plan with about ``share`` times as many shots."""
     root = share**0.5
     looks = tuple(max(4, round(many * share)) if many else 0 for many in plan.looks)
-    return Plan(
-        looks, tuple((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
-    )
+    rounds = ((max(2, round(many * root)), max(1, round(each * root))) for many, each in plan.rounds)
+    return Plan(looks, tuple(rounds))
 
 
-class FrameJudge:
+class FrameJudge(Judge):
     """Judges strokes by the positions of a frame that they leave.
 
     Parameters
     ----------
-    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+    env_or_options
         Where strokes are played, see ``Planner``, including the rules of frames.
     worth : callable
         Function of n ``Positions``: the points that each striker will score in the rest of the frame less those of the
         opponent, float (n,).
     chance : Chance, optional
-        The law of the chance to win of an expected lead, see ``planning.worth``. None (default): points alone count.
+        The law of the chance to win of an expected lead, see ``planning.worth``. None: points alone count.
     foresee : callable, optional
-        Function that judges safeties without simulating a shot, so that many more are considered. None (default): safeties
-        are tried as proposed.
+        Function that judges safeties without simulating a shot, so that many more are considered. None: as proposed.
 
     Examples
     --------
@@ -90,30 +69,25 @@ class FrameJudge:
 
     def __init__(
         self,
-        env_or_options: Environment | Options | Mapping[str, Any],
+        env_or_options: RulesLike,
         worth: Worth,
         chance: Chance | None = None,
         *,
         foresee: Foresee | None = None,
     ):
-        rules = options_in(env_or_options).rules
-        self.rules: Rules = rules
-        self.noise: Noise = rules.noise
-        self._trials = FrameTrials(rules, Threads(min(1024, processors())))
-        self.spread: Spread = self.noise.spread(rules.physics)
-        self.dynamics: Dynamics = Dynamics.of(self.rules)
+        super().__init__(options_in(env_or_options).rules)
+        self._trials = FrameTrials(self.rules, Threads(min(1024, processors())))
         self.worth: Worth = worth
         self.chance: Chance | None = chance
         self.foresee: Foresee | None = foresee
 
     def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
-        """See ``Judge.plans``: one where a likely pot makes the decision easy, one elsewhere."""
+        """One where a likely pot makes the decision easy, one elsewhere."""
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames, or judged by a VisitJudge")
         if len(search.propose) != 1:
-            raise refuse_what(
-                "propose", f"{len(search.propose)} generators", "must be one: of strokes at pots"
-            )
+            many = f"{len(search.propose)} generators"
+            raise refuse_what("propose", many, "must be one: of strokes at pots")
         easy, hard = (scale(plan, search.budget / BUDGET) for plan in PLANS)
         if self.noise.silent:
             easy, hard = easy._replace(rounds=()), hard._replace(rounds=())
@@ -126,24 +100,18 @@ class FrameJudge:
         return [(easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))]
 
     def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
-        """See ``Judge.propose``: so many of each kind as the plan says."""
+        """So many of each kind as the plan says."""
         made, visits = [], at.as_visits()
         generators = (*search.propose, safeties, at_balls, over_cushions)
         for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
-            if many and kind == SAFETY and self.foresee is not None:
-                made.append(
-                    (
-                        *self._promising(
-                            self.foresee, at, generate(search, visits, FORESEEN * many, seeds), many
-                        ),
-                        kind,
-                    )
-                )
-            elif many:
-                made.append((*Proposals(*generate(search, visits, many, seeds)), kind))
-        strokes = np.concatenate([one[0] for one in made], axis=1)
-        chances = np.concatenate([one[1] for one in made], axis=1)
-        kinds = np.concatenate([np.full(one[1].shape, one[2]) for one in made], axis=1)
+            if not many:
+                continue
+            more = FORESEEN if kind == SAFETY and self.foresee is not None else 1
+            strokes, chances = generate(search, visits, more * many, seeds)
+            if kind == SAFETY and self.foresee is not None:
+                strokes, chances = self._promising(self.foresee, at, Proposals(strokes, chances), many)
+            made.append((strokes, chances, np.full(chances.shape, kind)))
+        strokes, chances, kinds = (np.concatenate(part, axis=1) for part in zip(*made, strict=True))
         return Proposed(strokes, chances, kinds, np.full(len(at), plan.looks[1] > 0))
 
     def _promising(self, foresee: Foresee, at: Positions, made: Proposals, many: int) -> Proposals:
@@ -161,8 +129,7 @@ class FrameJudge:
         return Proposals(strokes, np.take_along_axis(made.chances, best, 1))
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
-        """See ``Judge.look``, with the chance of each pot; what fouls as intended is played where it wins the frame, or where
-        nothing else was found."""
+        """With the chance of each pot; what fouls as intended goes on where it wins the frame, or nothing else was found."""
         level = np.zeros((len(rows), COLUMNS))
         after, before = self.outcomes(at, rows, proposed.strokes[rows, picks], level), lead_of(at)
         foul = after.game[:, columns.SCORE_1] > at.game[rows, columns.SCORE_1]
@@ -182,20 +149,16 @@ class FrameJudge:
         values[keep] = parts
         return values, keep
 
-    def groups(self, kinds: Ints, looks: Floats) -> Ints:
-        """See ``Judge.groups``: the kinds themselves."""
-        return kinds
-
     def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
-        """See ``Judge.sample``: the ``_parts`` of each."""
+        """The ``_parts`` of each."""
         return self._parts(at, rows, self.outcomes(at, rows, proposed.strokes[rows, picks], errors))
 
     def score(self, values: Floats) -> Floats:
-        """See ``Judge.score``, of (n, m, 7), see ``_parts``: the chance to win, and hardly the points."""
+        """Of (n, m, 7), see ``_parts``: the chance to win, and hardly the points."""
         return self._one(self._play_again(values))
 
     def figures(self, values: Floats) -> tuple[Floats, Floats]:
-        """See ``Judge.figures``: chances to win, without a law the points; and the points."""
+        """Chances to win, without a law the points; and the points."""
         both = self._play_again(values)
         return both[..., 1 if self.chance is None else 0], both[..., 1]
 
@@ -204,47 +167,41 @@ class FrameJudge:
         return self._trials.play(at, rows, strokes, errors)
 
     def gains(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), the chance to
-        win and the points."""
+        """What strokes (m, 5) on ``at[rows]`` under errors (m, 5) are worth to their strikers: (m, 2), chance and points."""
         return self.value_of(lead_of(at)[rows], self.outcomes(at, rows, strokes, errors))
 
     def value_of(self, before: Floats, after: Positions) -> Floats:
-        """What strokes that were played at the leads ``before`` (m,) and left ``after`` are worth to their strikers:
-        (m, 2), as ``gains``."""
-        points = follows(self.worth, after, before, self.rules.rule_set.code)
+        """What strokes played at the leads ``before`` (m,) that left ``after`` are worth to their strikers, as ``gains``."""
+        points = worths.follows(self.worth, after, before, self.rules.rule_set.code)
         rest = before + points - lead_of(after)
         chance = self.chances(lead_of(after), rest, after)
         if self.chance is not None:
-            rows = np.flatnonzero(self._is_others(before, after) & (lead_of(after) < -left_of(after)))
-            rows = rows[~clear_paths(turn_to_striker(after[rows])).any_part]
-            fouled = self.chances(lead_of(after)[rows] + FOUL, rest[rows], after[rows])
+            game, lead = after.game, lead_of(after)  # where the other comes to a stroke without a foul
+            theirs = (game[:, columns.STRIKER] == 1) & (game[:, columns.PHASE] == columns.STROKE)
+            theirs &= (
+                (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0) & (lead >= before)
+            )
+            rows = np.flatnonzero(theirs & (lead < -left_of(after)))
+            rows = rows[~clear_paths(turn_to_striker(after[rows]))]
+            fouled = self.chances(lead[rows] + FOUL, rest[rows], after[rows])
             chance[rows] += HIDES * np.maximum(0.0, fouled - chance[rows])  # a snooker that the striker needs
         over, won = after.game[:, columns.OVER] != 0, after.game[:, columns.WINNER] == 0
         return np.column_stack([np.where(over, won, chance), points])
 
-    @staticmethod
-    def _is_others(before: Floats, after: Positions) -> Bools:
-        """Whether the other comes to a stroke without a foul: (m,)."""
-        game = after.game
-        comes = (game[:, columns.STRIKER] == 1) & (game[:, columns.PHASE] == columns.STROKE)
-        comes &= (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0)
-        return comes & (lead_of(after) >= before)
-
     def chances(self, now: Floats, worth: Floats, at: Positions) -> Floats:
-        """The chances to win, (m,), of who leads by ``now`` and expects ``worth`` more than the other from the balls of
-        ``at``; without a law 0."""
+        """The chances to win (m,) of who leads by ``now`` and expects ``worth`` more from ``at``; without a law 0."""
         if self.chance is None:
             return np.zeros(len(now))
         left, clock = left_of(at), self.rules.rule_set.clock
         if not clock:
-            return self.chance(now, worth, left, last_of(at), self.spread.core)
+            return self.chance(now, worth, left, worths.last_of(at), self.spread.core)
         # a stroke is played while there is time for one more, and takes at least the time to play it
         strokes = np.maximum(1, -((at.game[:, columns.CLOCK] - clock) // self.rules.time_to_play) - 1)
         each = np.maximum(LAST, at.on_table[:, 1:16].sum(axis=1))  # several reds at once
         left = np.minimum(left, each * strokes)
         worth = np.clip(worth, -left, left)
-        chances = self.chance(now, worth, left, last_of(at), self.spread.core)
-        ends = in_one_stroke(now, worth, each, at.game[:, columns.STRIKER] == 0)
+        chances = self.chance(now, worth, left, worths.last_of(at), self.spread.core)
+        ends = worths.in_one_stroke(now, worth, each, at.game[:, columns.STRIKER] == 0)
         return np.where((strokes == 1) & (at.game[:, columns.RESPOTTED_BLACK] == 0), ends, chances)
 
     def _one(self, both: Floats) -> Floats:
@@ -252,8 +209,8 @@ class FrameJudge:
         return both[..., 1] if self.chance is None else both[..., 0] + TIE * both[..., 1]
 
     def _parts(self, at: Positions, rows: Ints, after: Positions) -> Floats:
-        """What strokes on ``at[rows]`` that left ``after`` are worth, (k, 7): chance and points where no miss was called;
-        whether one was, and then chance and points if it is not played again, and what they lose by the penalty."""
+        """What strokes that left ``after`` are worth, (k, 7): chance and points where no miss was called; whether one was, and
+        then chance and points if it is not played again, and what they lose by the penalty."""
         before, parts = lead_of(at)[rows], np.zeros((len(rows), 7))
         both, called = self.value_of(before, after), after.game[:, columns.MISS_CALLED] != 0
         parts[~called, :2], parts[called, 3:5], parts[:, 2] = both[~called], both[called], called
@@ -266,8 +223,8 @@ class FrameJudge:
         return parts
 
     def _play_again(self, parts: Floats) -> Floats:
-        """Chances and points (n, m, 2) of strokes with these ``_parts`` (n, m, 7) on average: a called miss may be played
-        again, so that it is worth no more than the best of the m strokes, less its penalty."""
+        """Chances and points (n, m, 2) of ``_parts`` (n, m, 7): a called miss may be played again, so that it is worth no more
+        than the best of the m strokes, less its penalty."""
         fair, called, left, less = parts[..., :2], parts[..., 2:3], parts[..., 3:5], parts[..., 5:]
         out, again = fair + left, fair + less
         alone = np.where(called < 1.0, again / np.where(called < 1.0, 1.0 - called, 1.0), -np.inf)

@@ -1,25 +1,20 @@
-"""What is a stroke of a visit worth? Its points, and the value of the position that it leaves. The score of a look without
-error is the chance of its pot by the pot's width, times that. Where strokes without a pot are tried, the penalty of a foul is
-deducted and, if the visit ends, the share ``LEFT`` of what the position is worth to the opponent."""
+"""What is a stroke of a visit worth? Its points, and the value of the position that it leaves; where strokes without a pot
+are tried, less the penalty of a foul and, if the visit ends, the share ``LEFT`` of what the position is worth to the opponent."""
 
-from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .._lib.types import Bools, Environment, Floats, Ints
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
-from ..tasks.noise import Noise, Spread
-from ..tasks.options import Options, Rules
 from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
-from .aims import Dynamics
-from .planner import Planner, options_in
+from .planner import Planner, RulesLike, options_in
 from .positions import Positions
+from .pot_geometry import prospects_of
 from .proposals import Proposals, Propose, at_balls, over_cushions
-from .prospects import prospects_of
-from .search import Plan, Proposed, Search
+from .search import Judge, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 
 SCHEDULES = (
@@ -31,12 +26,11 @@ SCHEDULES = (
 )
 """Budget, number of looks, and for each round the number of strokes and their further samples."""
 LEFT = 0.5  # share of a position's value for the opponent that counts
-FOUL = 20.0
-"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or a free ball."""
-Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
-"""Values [points] of n positions that strokes have left: (n,)."""
-WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
-"""The generators for positions in which those of the search have no likely pot."""
+FOUL = 20.0  # what a foul costs beside its penalty [points]: the balls replaced, or a free ball
+Value: TypeAlias = Callable[
+    [Positions], Floats | Singles
+]  # values [points] of positions that strokes have left
+WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)  # for positions without a likely pot
 
 
 def schedule(budget: int) -> Plan:
@@ -48,20 +42,17 @@ def schedule(budget: int) -> Plan:
     return Plan((budget,), ())
 
 
-class VisitJudge:
+class VisitJudge(Judge):
     """Judges strokes by the points of a visit.
 
     Parameters
     ----------
-    env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        Where strokes are played, see ``Planner``: physics, table, fidelity and execution noise count. With the
-        reward "legal" strokes of all kinds are tried, and the share of them that is no foul is their score.
+    env_or_options, threads
+        As for ``Planner``. With the reward "legal" strokes of all kinds are tried; their score is the share that is no foul.
     value : callable, optional
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
     pots_only : bool, optional
-        Whether only the chance of the pot counts; without a pot, the chance of a foul counts against a stroke. Default False.
-    threads : int, optional
-        As for ``Planner``.
+        Whether only the chance of the pot counts; without a pot, the chance of a foul counts against a stroke.
 
     Examples
     --------
@@ -74,7 +65,7 @@ class VisitJudge:
 
     def __init__(
         self,
-        env_or_options: Environment | Options | Mapping[str, Any],
+        env_or_options: RulesLike,
         value: Value | None = None,
         *,
         pots_only: bool = False,
@@ -82,10 +73,7 @@ class VisitJudge:
     ):
         options = options_in(env_or_options)
         self.planner: Planner = Planner(options, threads=threads)
-        self.rules: Rules = self.planner.rules
-        self.noise: Noise = self.rules.noise
-        self.spread: Spread = self.noise.spread(self.rules.physics)
-        self.dynamics: Dynamics = Dynamics.of(self.rules)
+        super().__init__(self.planner.rules)
         self.value: Value = self._by_rule if value is None else value
         self.legal: bool = options.reward == "legal"
         self.pots_only: bool = pots_only
@@ -107,10 +95,8 @@ class VisitJudge:
         doubt = chances.max(axis=1) <= (1.0 if self.legal else 0.0)
         if doubt.any():
             strokes, chances, kinds = strokes.copy(), chances.copy(), kinds.copy()
-            every = (*search.propose, *WITHOUT_POTS)
-            strokes[doubt], chances[doubt], kinds[doubt] = self._share(
-                search, every, at[doubt], m, seeds[doubt]
-            )
+            shared = self._share(search, (*search.propose, *WITHOUT_POTS), at[doubt], m, seeds[doubt])
+            strokes[doubt], chances[doubt], kinds[doubt] = shared
         return Proposed(strokes, chances, kinds, doubt | kinds.any(axis=1))
 
     def _share(
@@ -128,13 +114,12 @@ class VisitJudge:
         return strokes, chances, which
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
-        """See ``Judge.look``: the points of each, by the chance of its pot."""
+        """The points of each, by the chance of its pot."""
         gains = self.sample(at, proposed, rows, picks, np.zeros((len(rows), COLUMNS)))[:, 0]
         if not self.noise.silent and not self.legal:
             chances = proposed.chances[rows, picks]
             gains *= chances
-            doubtful = proposed.safe & (proposed.chances < 1.0).any(axis=1)
-            doubt = np.flatnonzero(doubtful)
+            doubt = np.flatnonzero(doubtful := proposed.safe & (proposed.chances < 1.0).any(axis=1))
             if len(doubt) and not self.pots_only:  # a pot that is missed leaves the balls about as they lie
                 left = np.zeros(len(at))
                 left[doubt] = LEFT * self.value(for_opponent(at[doubt].as_visits()))
@@ -142,11 +127,11 @@ class VisitJudge:
         return gains[:, None], np.ones(len(rows), np.bool_)
 
     def groups(self, kinds: Ints, looks: Floats) -> Ints:
-        """See ``Judge.groups``: those without a pot that scored by luck are a group of their own."""
+        """Those without a pot that scored by luck are a group of their own."""
         return np.where((kinds > 0) & (looks[..., 0] > 0.0), -1, kinds)
 
     def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
-        """See ``Judge.sample``: points, and the value of what is left."""
+        """Points, and the value of what is left."""
         out = self.planner.play_strokes(at, rows, proposed.strokes[rows, picks], errors=errors)
         gains, penalty, careful, after = out.points, out.penalty, proposed.safe[rows], out.afterstates
         if self.legal:
@@ -160,14 +145,6 @@ class VisitJudge:
         if len(left):
             gains[left] -= LEFT * self.value(for_opponent(after[left]))
         return gains[:, None]
-
-    def score(self, values: Floats) -> Floats:
-        """See ``Judge.score``: points alone."""
-        return values[..., 0]
-
-    def figures(self, values: Floats) -> tuple[Floats, Floats]:
-        """See ``Judge.figures``: points are all."""
-        return values[..., 0], values[..., 0]
 
 
 def for_opponent(after: Positions) -> Positions:

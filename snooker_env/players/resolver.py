@@ -198,7 +198,7 @@ def _read(path: Path) -> Any:
 def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
     made = _read(path)
     if made is None:
-        from .saved import saved_player
+        from .saved_models import saved_player
 
         return saved_player(path, options, trust)
     if options:

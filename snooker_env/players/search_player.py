@@ -1,20 +1,14 @@
-"""How do players search? By one ``Search``; a name may end in simulated shots: ``search_2000``.
-
-* ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
-* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
-  the weights of the level of execution errors that it plays under.
-* ``best_pot`` plays the likeliest pot without regard to what follows.
-
-After a foul in a frame a planner decides by the learned worth, the others by the likeliest pot (``BoundPlayer.worth``)."""
+"""How do players search? By one ``Search``; a name may end in simulated shots: ``search_2000``. ``search`` judges by the rule of
+thumb and looks at strokes spread over the pots, ``planner`` by the learned value at those that the learned policy proposes, of
+the level of errors that it plays under. ``best_pot`` plays the likeliest pot. After a foul a planner decides by learned worth."""
 
 import numpy as np
 
 from .._lib.check import integer
 from .._lib.types import Floats, Integers
 from ..planning import Positions, Search, VisitJudge
-from ..planning.learned.learned_value import LearnedValue
-from ..planning.learned.learned_worth import LearnedWorth
-from ..planning.learned.policy_proposals import PolicyProposals
+from ..planning.learned.learned_worth import LearnedValue, LearnedWorth
+from ..planning.learned.stroke_policy import PolicyProposals
 from ..planning.positions import PositionsLike
 from ..planning.proposals import Propose, at_pots
 from ..planning.search import BUDGET, MOST
@@ -67,11 +61,9 @@ class SearchPlayer(BoundPlayer):
 
 
 def show_strokes(one: Ranked, said: Strokes) -> Ranked:
-    """What a player shows of a ranking: the strokes that met noise samples, else all, at most ``RANKED``, each with what it
-    says with the one that it plays (one row)."""
+    """What a player shows of a ranking: the strokes that met noise samples, else all, at most ``RANKED``; it says ``said``."""
     m = min(RANKED, int((one.samples > 0).sum()) or len(one.samples))
     same = [np.repeat(part, m, 0) for part in said.parts[1:]]
     scores = None if one.scores is None else one.scores[:m]
-    return Ranked(
-        Strokes(one.strokes.values[:m], *same), scores, one.points[:m], one.samples[:m], one.kinds[:m]
-    )
+    strokes = Strokes(one.strokes.values[:m], *same)
+    return Ranked(strokes, scores, one.points[:m], one.samples[:m], one.kinds[:m])

@@ -1,6 +1,4 @@
-"""What is on the table, and what may be done? As JSON types and in words, for programs and the page.
-
-docs/play/protocol.md describes the fields; the page adds what is its own."""
+"""What is on the table, and what may be done? As JSON types and in words, for programs and the page (docs/play/protocol.md)."""
 
 from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, hypot, radians
@@ -75,9 +73,9 @@ def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     unit = onward / np.maximum(np.hypot(*onward.T), 1e-12)[:, None]
     ghosts = places[balls] - 2.0 * BALL_RADIUS * unit
     rows = np.zeros(len(ways), np.int64)
-    skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
-    barred = obstructions(at, rows, places[balls], aims, ignore=skip)
-    barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
+    skip = np.column_stack([np.full(len(ways), CUE), balls])
+    barred = obstructions(at, rows, places[balls], aims.copy(), skip)
+    barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, skip)
     each = zip(ways, ghosts, aims, barred, strict=True)
     return [_line(*one, places, tolerances, spread) for one in each]
 
@@ -118,11 +116,9 @@ def _say_turn(frame: Frame, labels: tuple[str, str]) -> str:
     if frame.phase == "choice":
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    on = frame.ball_on.name.lower().replace("_", " ") + (
-        ", and a free ball are" if frame.free_ball else " is"
-    )
+    on, free = frame.ball_on.name.lower().replace("_", " "), ", and a free ball are"
     placing = "; the cue ball is in hand" if frame.in_hand else ""
-    return f"{yours}: {on} on{placing}."
+    return f"{yours}: {on}{free if frame.free_ball else ' is'} on{placing}."
 
 
 def where(ball: int, x: float, y: float) -> str:
@@ -183,9 +179,7 @@ def report_game(
 def report_turn(
     frame: Frame, at: Positions, table: Table, noise: NoiseName
 ) -> tuple[dict[str, Any], list[Line]]:
-    """What the striker may do in the one position ``at``, as JSON types, and the lines to pockets.
-
-    ``noise``: the striker's."""
+    """What the striker may do in the one position ``at``, as JSON types, and the lines to pockets under the ``noise``."""
     hidden, lines, on = False, [], 0
     if frame.phase == "stroke":
         both = [visit_of(frame, at, free_ball=free) for free in (False, True)[: 1 + frame.free_ball]]

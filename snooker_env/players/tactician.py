@@ -1,26 +1,93 @@
-"""How does the planner of the whole game play? One search for pots, safeties and escapes, one worth for both
-players, and all decisions of a frame by that worth (``frame_decisions``)."""
+"""How does the planner of the whole game play? One search for pots, safeties and escapes, and all decisions of a frame by one
+worth for both players: the stroke, what to do after a foul, where the cue ball in hand goes, who begins at a re-spotted black."""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from .._lib.check import integer, refuse, refuse_what
-from .._lib.types import Floats, Integers, Singles
+from .._lib.types import Floats, Integers
 from ..game import frame_columns as columns
 from ..planning import FrameJudge, Positions, Search, processors
 from ..planning.aims import Dynamics
-from ..planning.learned.foresight import Foresight
-from ..planning.learned.learned_value import LearnedValue
-from ..planning.learned.learned_worth import LearnedWorth
-from ..planning.learned.policy_proposals import PolicyProposals
-from ..planning.positions import PositionsLike
+from ..planning.learned.dense_layers import Weights
+from ..planning.learned.frame_strokes import Foresight, FrameStrokes
+from ..planning.learned.learned_worth import LearnedValue, LearnedWorth
+from ..planning.learned.stroke_policy import PolicyProposals
+from ..planning.positions import PositionsLike, seeds_of
 from ..planning.search import BUDGET, MOST
-from ..planning.worth import Chance, decide, lead_of
+from ..planning.worth import Chance, apply_decision, best_places, breaks_off, decide, lead_of, left_of
+from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import FramePlayer
-from .player import Ranked, Strokes
-from .search_player import SearchPlayer
+from .player import BoundPlayer, Ranked, Strokes, place_cue_balls
+from .search_player import SearchPlayer, show_strokes
 from .weights import learned_at, learned_worth, level_for
+
+LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
+_IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
+
+
+class Decided(NamedTuple):
+    strokes: Strokes
+    tried: list[Ranked | None]  # what its search tried; None where it plays no stroke or found none
+    start: Positions  # what the strokes are played from, after decisions, with placed cue balls
+
+
+class FramePlayer(BoundPlayer):
+    """Plays frames by what its ``search`` finds and its ``judge`` says of positions; without a stroke as ``_plain`` does."""
+
+    search: Search | FrameStrokes
+    judge: FrameJudge | FrameStrokes
+    _plain: GhostBall
+
+    def decide_frames(self, at: Positions, seeds: Integers) -> Decided:
+        """What it does in n positions of frames, what it tried in those in which it strikes, and from where."""
+        options, judge, seeds = self.options, self.judge, seeds_of(seeds, len(at))
+        worth = judge.worth
+        n, at = len(at), at.known_to(judge.rules).copy()
+        values, places = np.tile(_IDLE, (n, 1)), np.full((n, 2), np.nan)
+        decisions, declare = np.full(n, columns.PLAY), np.full(n, SAYS_NOTHING)
+        plays, code = np.ones(n, np.bool_), judge.rules.rule_set.code
+        rows = np.flatnonzero(at.lot)
+        if len(rows):
+            at.game[rows, columns.PHASE] = columns.STROKE
+            other = rows[worth(at[rows]) < 0.0] if "lot" in options.says else rows[:0]
+            declare[other], plays[other] = OTHER_BEGINS, False
+        rows = np.flatnonzero(at.choice)
+        if len(rows):
+            decisions[rows] = decide(worth, at[rows], code)[0]
+            for what in (columns.PLAY, columns.PLACE_ANYWHERE):
+                some = rows[decisions[rows] == what]
+                at.game[some] = apply_decision(at[some], what).game
+            plays[rows] = np.isin(decisions[rows], (columns.PLAY, columns.PLACE_ANYWHERE))
+        hand, usual = plays & at.in_hand, breaks_off(at) | at.anywhere
+        for rows in np.flatnonzero(hand & usual), np.flatnonzero(hand & ~usual):
+            if len(rows):  # at the break-off, and where it may stand anywhere, as other players do
+                some = at[rows]
+                put, _ = place_cue_balls(some, seeds[rows]) if usual[rows[0]] else best_places(worth, some)
+                at.positions[rows], places[rows] = put.positions, put.positions[:, 0]
+        tried: list[Ranked | None] = [None] * n
+        rows = np.flatnonzero(plays)
+        for k, one in zip(rows.tolist(), self.search.rank(at[rows], seeds[rows]), strict=True):
+            if len(one.strokes):
+                tried[k], values[k] = one, one.strokes.values[0]
+        rows = rows[[tried[k] is None for k in rows.tolist()]]
+        if len(rows):  # nothing was found: any stroke at a ball on
+            values[rows] = self._plain.play(at[rows].as_visits(), seeds[rows]).values
+        if "concede" in options.says and judge.chance is not None:
+            scores = [1.0 if one is None or one.scores is None else one.scores[0] for one in tried]
+            some = np.flatnonzero(np.array(scores) < LOST)
+            behind = lead_of(at[some]) < -left_of(at[some])  # it needs snookers
+            declare[some[behind]] = CONCEDES
+        return Decided(Strokes(values, places, decision=decisions, declare=declare), tried, at)
+
+    def _consider(self, at: Positions, seeds: Integers) -> list[Ranked]:
+        """The strokes that met noise samples, else all, at most ``RANKED``, best first, with chances or points."""
+        strokes, tried, _ = self.decide_frames(at, seeds)
+        own = [strokes[k : k + 1] for k in range(len(tried))]
+        both = zip(own, tried, strict=True)
+        return [Ranked(mine, None) if one is None else show_strokes(one, mine) for mine, one in both]
 
 
 class Tactician(FramePlayer):
@@ -29,9 +96,7 @@ class Tactician(FramePlayer):
     kind = "tactician"
     judge: FrameJudge
 
-    def __init__(
-        self, budget: int = BUDGET, learned: tuple[list[tuple[Singles, Singles]], Chance] | None = None
-    ):
+    def __init__(self, budget: int = BUDGET, learned: tuple[Weights, Chance] | None = None):
         self.name: str = self.kind if budget == BUDGET else f"{self.kind}_{budget}"
         self.budget: int = integer("budget", budget, FrameJudge.least, MOST)
         self._given, self._visits = learned, SearchPlayer("planner", budget)
@@ -57,12 +122,10 @@ class Tactician(FramePlayer):
         return self._consider(at, seeds) if at.of_frames else self._visits.rank(at, seeds)
 
     def chance_to_win(self, positions: PositionsLike) -> Floats:
-        """Return how likely the strikers of n positions of frames win, if both play on as the ``tactician`` does.
+        """Return how likely the strikers of n positions of frames win, if both play on as the ``tactician`` does: float64 (n,).
 
-        Float64 (n,), in [0, 1]; 0 or 1 of a frame that is over. The worth of the position is added to the lead, and a
-        law (``planning.worth.Chance``) says what that is worth while so many points are on the table. A cue ball in hand
-        is not placed; after a foul or a lot that was won the best decision is taken. ValueError if the player is not
-        bound or has no law, or positions are of visits."""
+        A law (``planning.worth.Chance``) of the lead and the worth of the position. A cue ball in hand is not placed; after a
+        foul or a lot the best decision is taken. ValueError if the player is not bound or has no law, or for visits."""
         rules, at, judge = self.options.rules, Positions.of(positions), self.judge
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames: nobody wins a visit")

@@ -10,7 +10,7 @@ from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.parameters import Physics
-from snooker_env.planning import Positions, prospects
+from snooker_env.planning import RULE_OF_THUMB, Positions, prospects_of
 from snooker_env.tasks.noise import Noise, Spread
 from snooker_env.tasks.visit import BALL_ON
 from tests.positions import tables
@@ -39,13 +39,13 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
-@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, (8.0, 0.4, 0.3, 0.5)])
+@pytest.mark.parametrize("constants", [RULE_OF_THUMB, (8.0, 0.4, 0.3, 0.5)])
 def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)
     at.game[:, BALL_ON] = int(ball_on)
     for spread in (Spread(5e-4), Spread(6e-3), Spread(5e-4, 0.1, 4.0)):
-        values, chances = prospects.prospects_of(at, spread, constants, most=6)
+        values, chances = prospects_of(at, spread, constants, most=6)
         for k in range(30):
             value, all_of = by_plain_python(at.positions[k], at.on_table[k], ball_on, spread, *constants)
             assert values[k] == pytest.approx(value, rel=1e-9)
@@ -60,12 +60,12 @@ def test_what_is_left_of_a_last_black():
     at.on_table[0, BLACK] = True
     at.positions[0, CUE], at.positions[0, BLACK] = (0.0, 0.8), (0.4, 1.3)
     at.game[0, BALL_ON] = int(BallOn.BLACK)
-    (value,), (chances,) = prospects.prospects_of(at, Spread(2e-3), near := (25.0, 0.15, 0.05, 0.0))
+    (value,), (chances,) = prospects_of(at, Spread(2e-3), near := (25.0, 0.15, 0.05, 0.0))
     best = 7.0 * np.sort(chances)[::-1]
     assert value == pytest.approx(best[0] + 0.15 * best[1] + 0.05 * best[2]) and value > 1.0
     at.on_table[0, PINK] = True  # but is not on: it follows
     at.positions[0, PINK] = (-0.6, -1.0)
-    assert prospects.prospects_of(at, Spread(2e-3), near)[0][0] == pytest.approx(
+    assert prospects_of(at, Spread(2e-3), near)[0][0] == pytest.approx(
         value * (7 + 25 * (1 - exp(-6 / 25))) / 7
     )
 
