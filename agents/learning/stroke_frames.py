@@ -8,8 +8,8 @@ from snooker_env import Options
 from snooker_env.planning.learned.frame_strokes import FrameStrokes
 from snooker_env.players import FRAMES
 from snooker_env.players import player as snooker_player
+from snooker_env.players.search_player import Tactician
 from snooker_env.players.stroke_value_player import StrokeValuePlayer
-from snooker_env.players.tactician import Tactician
 
 from .frame_self_play import play_frames
 

@@ -117,9 +117,9 @@ def _plan(env: "SnookerEnv", match: "SnookerEnv") -> None:
     """Planning, players and advice."""
     from ..advice.room import room_for
     from ..planning import Planner, Positions, clear_paths, pots, prospects_of
+    from ..planning.judges import VisitJudge
     from ..planning.pot_geometry import obstructions
     from ..planning.proposals import at_balls, over_cushions
-    from ..planning.visit_judge import VisitJudge
     from ..planning.worth import best_places, decide
     from ..players import player
     from ..tasks.noise import Spread

@@ -4,7 +4,7 @@ A stroke is five numbers in SI, see ``Planner``. What positions are worth is sai
 
 from ..tasks.rule_of_thumb import RULE_OF_THUMB, SURE
 from ..tasks.threads import processors
-from .frame_judge import FrameJudge
+from .judges import FrameJudge, VisitJudge
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
@@ -12,7 +12,6 @@ from .pot_geometry import Pots, clear_paths, pots, prospects_of
 from .proposals import Proposals, at_pots
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
-from .visit_judge import VisitJudge
 
 __all__ = [
     "RULE_OF_THUMB",

@@ -183,10 +183,9 @@ def prospects_of(
 
     Parameters
     ----------
-    at, spread : Positions, Spread
-        The n positions; the law of the cue ball's direction, ``Noise.spread``.
-    constants : tuple of float, optional
-        ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
+    at, spread, constants
+        The n positions; the law of the cue ball's direction, ``Noise.spread``; ``RULE_OF_THUMB``, or ``SURE`` for a player
+        without execution errors.
     most, threads : int, optional
         Number of chances for each position; largest number of threads.
     rails : numpy.ndarray, optional

@@ -172,8 +172,7 @@ class Search:
             order[safe] = in_turn(order[safe], judge.groups(kinds[safe], looks[safe]))
             there = np.isfinite(looks[every, order, 0])
             order = np.take_along_axis(order, np.argsort(~there, axis=1, kind="stable"), 1)
-
-        order, means, samples = self._halve(at, proposed, looks, order, plan.rounds, seeds)
+        order, means, samples = self._halve(at, proposed, looks, order, plan, seeds)
         scores, points = judge.figures(means)
         counts = np.bincount(rows, minlength=len(at))
         tried = np.arange(chances.shape[1]) < counts[:, None]  # what was not tried is last
@@ -187,22 +186,16 @@ class Search:
         return ranked
 
     def _halve(
-        self,
-        at: Positions,
-        proposed: Proposed,
-        looks: Floats,
-        order: Ints,
-        rounds: Sequence[tuple[int, int]],
-        seeds: Ints,
+        self, at: Positions, proposed: Proposed, looks: Floats, order: Ints, plan: Plan, seeds: Ints
     ) -> tuple[Ints, Floats, Ints]:
         """Sequential halving of strokes with these ``looks`` (n, m, v), -inf where there is none, best first in ``order``: the
         order then, means and samples."""
         judge, (n, m) = self.judge, looks.shape[:2]
         every, sums = np.arange(n)[:, None], PRIOR * looks
         values, tries = looks.copy(), np.zeros((n, m), np.int64)
-        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
+        samples = np.stack([normal_points(sum(each for _, each in plan.rounds), k) for k in seeds.tolist()])
         done = 0
-        for many, each in rounds:
+        for many, each in plan.rounds:
             best = order[:, :many]
             j, c = np.nonzero(np.isfinite(looks[every, best, 0]))
             c = best[j, c]

@@ -12,15 +12,15 @@ from ..game.balls import GREEN, SPOTS, YELLOW
 from ..game.frame_columns import CHOICE, OVER, PHASE, POINTS, STRIKER, VISIT_COLUMNS
 from ..game.layouts import STORED
 from ..planning import Positions, processors
+from ..planning.judges import for_opponent
 from ..planning.learned.learned_worth import LearnedValue
 from ..planning.positions import of_tables
-from ..planning.visit_judge import for_opponent
 from ..tasks.frame_kernels import AGENT
 from ..tasks.frames import Frames
 from ..tasks.options import Options
 from ..tasks.tables import I_FOULS, StepOutput, Tables
 from .player import decision_seeds
-from .tactician import Tactician
+from .search_player import Tactician
 from .weights import learned_at, level_for
 
 DRAWS = 16  # fresh errors of each stroke

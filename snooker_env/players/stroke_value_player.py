@@ -17,8 +17,8 @@ from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
 from .choices import GhostBall
 from .player import Ranked, Strokes, place_cue_balls
+from .search_player import FramePlayer
 from .seen import begun
-from .tactician import FramePlayer
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
 LIKELY = 0.75  # share of the predicted errors under which a stroke at a ball must be fair to be preferred

@@ -76,25 +76,20 @@ def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     skip = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims.copy(), skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, skip)
-    each = zip(ways, ghosts, aims, barred, strict=True)
-    return [_line(*one, places, tolerances, spread) for one in each]
-
-
-def _line(which, ghost, aim, barred, places, tolerances, spread):
-    ball, pocket = which
-    run, way = ghost - places[CUE], aim - places[ball]
-    far, on = hypot(*run), hypot(*way)
-    cos_cut = float(run @ way / max(far * on, 1e-12))
-    cut = acos(min(1.0, max(-1.0, cos_cut)))
-    tolerance = tolerances.get((ball, pocket), 0.0)
-    blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(barred))
-    why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
-    why = "" if tolerance or blocked else why
-    chance = None
-    if spread is not None and tolerance:
-        chance = float(pot_chances(np.array([tolerance]), np.array([far + on]), spread)[0])
-    aim = atan2(run[1], run[0])
-    return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
+    lines = []
+    for way, ghost, aim, others in zip(ways, ghosts, aims, barred, strict=True):
+        run, onward = ghost - places[CUE], aim - places[way[0]]
+        far, on_far = hypot(*run), hypot(*onward)
+        cos_cut = float(run @ onward / max(far * on_far, 1e-12))
+        cut, tolerance = acos(min(1.0, max(-1.0, cos_cut))), tolerances.get(way, 0.0)
+        blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(others))
+        why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+        chance = None
+        if spread is not None and tolerance:
+            chance = float(pot_chances(np.array([tolerance]), np.array([far + on_far]), spread)[0])
+        seen = tolerance > 0.0, blocked, "" if tolerance or blocked else why
+        lines.append(Line(*way, *seen, cut, far, on_far, atan2(run[1], run[0]), tolerance, chance))
+    return lines
 
 
 _ALONG = (

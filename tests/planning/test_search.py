@@ -19,9 +19,9 @@ from snooker_env.planning import (
     pots,
     prospects_of,
 )
+from snooker_env.planning.judges import FOUL, LEFT, schedule
 from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
-from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.options import Options
 from tests.positions import tables

@@ -8,7 +8,7 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position
 from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
 from snooker_env.players import FRAMES
-from snooker_env.players.tactician import Tactician
+from snooker_env.players.search_player import Tactician
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
 from tests.planning.test_trials import GAME, frames_in_play, positions_of

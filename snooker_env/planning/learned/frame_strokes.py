@@ -14,7 +14,7 @@ from ...tasks import cue_ball_path as path
 from ...tasks.noise import Spread
 from ...tasks.options import Rules
 from ..aims import Dynamics, law_of
-from ..frame_judge import EASY
+from ..judges import EASY
 from ..positions import Positions, PositionsLike, check_has_stroke, seeds_of
 from ..pot_geometry import in_parts
 from ..proposals import safeties
