@@ -19,15 +19,7 @@ from ..planning import Planner, Positions, Strokes
 from ..planning.stroke_columns import FARTHEST, LEAST, MOST
 from ..planning.stroke_columns import NAMES as COLUMNS
 
-STROKE = (
-    "speed",
-    "side",
-    "top",
-    "aim",
-    "aim_at",
-    "elevation",
-    "place",
-)  # fields of a request that define a stroke
+STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 
 
 @dataclass(frozen=True, kw_only=True)

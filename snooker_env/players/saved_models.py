@@ -141,7 +141,9 @@ class SavedModel:
         library, name = self.algorithm
         if not trust:
             why = "holds pickled Python code, which runs when it is loaded"
-            allowed = "must be a file that you trust, and come with trust=True, or --trust on the command line"
+            allowed = (
+                "must be a file that you trust, and come with trust=True, or --trust on the command line"
+            )
             raise self.refuse_file(f"{why}: {allowed}")
         try:
             if library == "sb3_contrib":
