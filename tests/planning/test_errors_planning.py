@@ -9,15 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import planning
 from snooker_env.benchmark import count_shots
-from snooker_env.planning import (
-    FrameJudge,
-    Planner,
-    Position,
-    Positions,
-    Search,
-    Strokes,
-    VisitJudge,
-)
+from snooker_env.planning import FrameJudge, Planner, Position, Positions, Search, Strokes, VisitJudge
 from tests.planning.test_position import FULL
 from tests.refusals import refuse_each, refused
 
@@ -111,29 +103,17 @@ def test_what_cannot_be_planned_is_refused():
     pot = {"positions": Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)]), "rows": [0], "balls": [1]}
     pot |= {"targets": [(0.8, 0.8)], "strokes": 2.3}
     assert SILENT.pot_aim(**pot).shape == (1,)
-    judge, frames = (
-        VisitJudge({}, threads=1),
-        FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some))),
-    )
-    names = (
-        vars(planning)
-        | globals()
-        | {
-            "NAN": np.nan,
-            "INF": np.inf,
-            "CARTPOLE": gymnasium.make("CartPole-v1"),
-            "MANY": Positions.of([AT] * 4),
-        }
-    )
+    judge, frames = VisitJudge({}, threads=1), FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some)))
+    names = vars(planning) | globals() | {"NAN": np.nan, "INF": np.inf}
+    names |= {"CARTPOLE": gymnasium.make("CartPole-v1"), "MANY": Positions.of([AT] * 4)}
     names |= {"JUDGE": judge, "FRAMES": frames, "spoilt": spoilt, "row": row, "play": SILENT.play}
     frame = sn.SnookerEnv(task="frame")
     frame.reset(seed=1)
     names |= {"FRAME": Positions.of(frame)}
     names |= {"club": lambda **passed: CLUB.play_strokes(AT, [0], **passed)}
     names |= {"chosen": lambda choice: CHOICES.play(AT, [0], choice)}
-    names |= {
-        "action": lambda one, **options: Strokes([one]).actions(sn.Options(**options), Positions.of(AT))
-    }
+    at = Positions.of(AT)
+    names |= {"action": lambda one, **options: Strokes([one]).actions(sn.Options(**options), at)}
     names |= {"aim": lambda **changes: SILENT.pot_aim(**pot | changes)}
     before = count_shots()
     refuse_each(PLANNED, names)

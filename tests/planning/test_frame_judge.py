@@ -11,15 +11,7 @@ from snooker_env.planning.judges import KEPT, PLANS, SURE_OF
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
 from snooker_env.planning.trials import turn_to_striker
-from snooker_env.planning.worth import (
-    NARROWEST,
-    WIDEST,
-    Chance,
-    apply_decision,
-    decide,
-    lead_of,
-    left_of,
-)
+from snooker_env.planning.worth import NARROWEST, WIDEST, Chance, apply_decision, decide, lead_of, left_of
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks import LEVELS

@@ -120,11 +120,7 @@ def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
     frame = sn.SnookerVectorEnv(1, **OPTIONS)
     frame.reset(seed=0)
     touching = Position(cue=(0.0, 0.0), reds=[(0.0, 0.05252), (0.0, -0.8)], black=(0.5, 0.0), on="red")
-    for turn, fair in (
-        (0.5, False),
-        (-0.5, True),
-        (0.0, True),
-    ):  # into it, at the red away from it, at the black
+    for turn, fair in ((0.5, False), (-0.5, True), (0.0, True)):  # into it, at the other red, at the black
         _, _, (met, legal) = contacts(frame, touching, [[1.5, 0.0, 0.0, turn * np.pi, 0.0]])
         assert met[0] > 0 and legal[0] == fair
     apart = Position(cue=(0.0, 0.0), reds=[(0.0, 0.2), (0.0, -0.8)], black=(0.5, 0.0), on="red")
