@@ -168,9 +168,8 @@ def for_opponent(after: Positions) -> Positions:
     """Positions after a visit as those of the opponent's; a cue ball in hand lies at its usual place."""
     theirs = after.copy()
     reds = theirs.on_table[:, 1:16].any(axis=1)
-    theirs.game[:, columns.BALL_ON] = np.where(
-        reds, int(BallOn.RED), 2 + theirs.on_table[:, 16:].argmax(axis=1)
-    )
+    lowest = 2 + theirs.on_table[:, 16:].argmax(axis=1)
+    theirs.game[:, columns.BALL_ON] = np.where(reds, int(BallOn.RED), lowest)
     theirs.game[:, [columns.IN_HAND, columns.POINTS, columns.OVER]] = 0
     theirs.positions[~theirs.on_table[:, CUE], CUE] = SPOTS[CUE]
     theirs.on_table[:, CUE] = True
@@ -321,9 +320,8 @@ class FrameJudge(Judge):
         if self.chance is not None:
             game, lead = after.game, lead_of(after)  # where the other comes to a stroke without a foul
             theirs = (game[:, columns.STRIKER] == 1) & (game[:, columns.PHASE] == columns.STROKE)
-            theirs &= (
-                (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0) & (lead >= before)
-            )
+            theirs &= (game[:, columns.OVER] == 0) & (game[:, columns.RESPOTTED_BLACK] == 0)
+            theirs &= lead >= before
             rows = np.flatnonzero(theirs & (lead < -left_of(after)))
             rows = rows[~clear_paths(turn_to_striker(after[rows]))]
             fouled = self.chances(lead[rows] + worths.FOUL, rest[rows], after[rows])

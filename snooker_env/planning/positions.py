@@ -38,9 +38,8 @@ def _flag(column: int, about: str, value: int | None = None) -> Any:
             return np.zeros(len(self), np.bool_)
         return self.game[:, column] != 0 if value is None else self.game[:, column] == value
 
-    return property(
-        read, doc=f"{about}, bool (m,)" + "; in visits never." * (column >= columns.VISIT_COLUMNS)
-    )
+    never = "; in visits never." if column >= columns.VISIT_COLUMNS else ""
+    return property(read, doc=f"{about}, bool (m,){never}")
 
 
 class Positions:
@@ -181,13 +180,9 @@ class Positions:
         return self.game[:, which] if self.of_frames else np.zeros((len(self), len(which)), np.int64)
 
     free_ball: Bools = _flag(columns.FREE_BALL, "Whether the striker has a free ball")
-    anywhere: Bools = _flag(
-        columns.ANYWHERE, "Whether the cue ball in hand may be placed anywhere on the table"
-    )
+    anywhere: Bools = _flag(columns.ANYWHERE, "Whether the cue ball in hand may be placed anywhere")
     choice: Bools = _flag(columns.PHASE, "Whether the striker may choose what follows a foul", columns.CHOICE)
-    lot: Bools = _flag(
-        columns.PHASE, "Whether the striker has won the lot and may choose who begins", columns.LOT
-    )
+    lot: Bools = _flag(columns.PHASE, "Whether the striker may choose who begins, by lot", columns.LOT)
     miss_called: Bools = _flag(columns.MISS_CALLED, "Whether the opponent's foul was called a miss")
     respotted_black: Bools = _flag(columns.RESPOTTED_BLACK, "Whether the re-spotted black decides the frame")
     in_hand: Bools = _flag(columns.IN_HAND, "Whether the cue ball is in hand")

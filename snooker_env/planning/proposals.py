@@ -36,10 +36,7 @@ from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5  # cue speeds at pots [m/s]; the smallest of strokes without a pot
 HIGHEST, WIDEST, RIM = 0.45, 0.35, 0.49
 """Largest tip offsets over R, up or down and to a side; radius of the disc that a corner is drawn in to."""
-PLAIN, POWER = (
-    0.5,
-    4.0,
-)  # share of the strokes without side; power of the chance in a pot's share of the strokes
+PLAIN, POWER = 0.5, 4.0  # share of the strokes without side; power of the chance in a pot's share of them
 GENTLEST, HARDEST, SAFE_TIP = 0.45, 6.0, 0.4  # of safeties: cue speeds [m/s], largest tip offset over R
 EDGE = 0.1  # how far from an edge of what is seen thin safeties are aimed, at most [rad]
 ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16

@@ -140,11 +140,8 @@ class SavedModel:
         runs, or if it cannot be loaded. ImportError without the library."""
         library, name = self.algorithm
         if not trust:
-            why = "holds pickled Python code, which runs when it is loaded"
-            allowed = (
-                "must be a file that you trust, and come with trust=True, or --trust on the command line"
-            )
-            raise self.refuse_file(f"{why}: {allowed}")
+            why = "holds pickled Python code, which runs when it is loaded: must be a file that you trust"
+            raise self.refuse_file(f"{why}, and come with trust=True, or --trust on the command line")
         try:
             if library == "sb3_contrib":
                 import sb3_contrib as module

@@ -24,9 +24,7 @@ from .pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, with_pots
 LAYERS = ("ball_1", "ball_2", "pot_1", "pot_2", "context_1", "context_2", "shared", "joint", "scores")
 """The linear layers, in the order of their computation."""
 BLOCK = 128  # tables that are scored together: their intermediate results stay in the processor's cache
-SCORED = (
-    -(-STROKES // 16) * 16
-)  # columns of the scores: 144 take less time than 135, as whole registers are written
+SCORED = -(-STROKES // 16) * 16  # columns of the scores: 144 take less time than 135, in whole registers
 STATE = OBSERVATION_SIZE - 5 * N_BALLS  # numbers of the game's state in an observation
 BALL_INPUTS = 5 + 2
 _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)

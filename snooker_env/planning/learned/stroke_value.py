@@ -27,10 +27,7 @@ from .stroke_policy import PolicyProposals, StrokePolicy, draw_choices
 
 SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
-LOOKS, SAMPLES = (
-    60,
-    3,
-)  # strokes that are looked at, and errors under which each is predicted; the first is none
+LOOKS, SAMPLES = 60, 3  # strokes that are looked at; errors under which each is predicted, the first is none
 LEARNED = 8.4e-4, 5e-3  # other errors of direction than it has learned from count as these [rad]
 _SEED = 7  # of the errors, which are the same for all
 _LEAST_SPEED = 0.03  # the least error of speed that is predicted: else all would come to the same place
