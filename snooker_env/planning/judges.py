@@ -66,10 +66,9 @@ class VisitJudge(Judge):
     ----------
     env_or_options, threads
         As for ``Planner``. With the reward "legal" strokes of all kinds are tried; their score is the share that is no foul.
-    value : callable, optional
-        Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
-    pots_only : bool, optional
-        Whether only the chance of the pot counts; without a pot, the chance of a foul counts against a stroke.
+    value, pots_only : callable, bool, optional
+        Values [points] of n ``Positions``: (n,), by default ``prospects_of``; whether only the chance of the pot counts, and
+        without a pot the chance of a foul against a stroke.
 
     Examples
     --------
@@ -189,15 +188,12 @@ class FrameJudge(Judge):
 
     Parameters
     ----------
-    env_or_options
-        Where strokes are played, see ``Planner``, including the rules of frames.
-    worth : callable
-        Function of n ``Positions``: the points that each striker will score in the rest of the frame less those of the
-        opponent, float (n,).
-    chance : Chance, optional
-        The law of the chance to win of an expected lead, see ``planning.worth``. None: points alone count.
-    foresee : callable, optional
-        Function that judges safeties without simulating a shot, so that many more are considered. None: as proposed.
+    env_or_options, worth
+        As for ``Planner``, with the rules of frames; function of n ``Positions``: the points that each striker will score in
+        the rest of the frame less those of the opponent, float (n,).
+    chance, foresee : Chance, callable, optional
+        The law of the chance to win of an expected lead, see ``planning.worth``, None: points alone count; function that
+        judges safeties without simulating a shot, so that many more are considered.
 
     Examples
     --------

@@ -76,10 +76,9 @@ class Planner:
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
         An environment of this package, wrapped or not, an ``Options``, or a dict of its fields.
-    noise : str, dict or Noise, optional
-        Execution noise in place of the environment's; "none" plays all strokes as intended.
-    threads : int, optional
-        In [1, 1024]; default one for each processor. Results do not depend on it.
+    noise, threads : optional
+        Execution noise, a str, dict or ``Noise``, in place of the environment's; an int in [1, 1024], by default one for each
+        processor, on which no result depends.
 
     Examples
     --------

@@ -51,17 +51,14 @@ class Positions:
 
     Parameters
     ----------
-    positions : array_like
-        float (m, 22, 2). Centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
-    on_table : array_like
-        bool (m, 22). Which balls are on the table.
+    positions, on_table : array_like
+        float (m, 22, 2), centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black; bool (m, 22).
     game : array_like
         int (m, 5), of visits: the ball on (a ``BallOn``), whether the cue ball is in hand, points of the
         visit, whether it is over, strokes so far. Or int (m, 33), of frames: ``snooker_env.game.frame_columns``.
-    saved : Layouts, optional
-        Of frames: the balls before the last foul, which "replace" restores.
-    conditions : array_like, optional
-        float (m, 8). The constants of each table with ``conditions="drawn"``, in the order of ``physics.conditions.RANGES``.
+    saved, conditions : optional
+        Of frames: the balls before the last foul, ``Layouts``, which "replace" restores; float (m, 8), the constants of each
+        table with ``conditions="drawn"``, in the order of ``physics.conditions.RANGES``.
 
     Examples
     --------

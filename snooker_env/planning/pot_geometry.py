@@ -129,8 +129,7 @@ def clear_paths(positions: PositionsLike) -> Bools:
     Returns
     -------
     numpy.ndarray
-        bool (m,), by the foul-and-miss rule (``snooker_env.game.paths``) with the cushions of the match table; False without
-        a cue ball.
+        bool (m,), by the foul-and-miss rule (``snooker_env.game.paths``) on the match table; False without a cue ball.
 
     Examples
     --------
@@ -186,11 +185,9 @@ def prospects_of(
     at, spread, constants
         The n positions; the law of the cue ball's direction, ``Noise.spread``; ``RULE_OF_THUMB``, or ``SURE`` for a player
         without execution errors.
-    most, threads : int, optional
-        Number of chances for each position; largest number of threads.
-    rails : numpy.ndarray, optional
-        Those that a real cue passes over, ``Planner.rules.rails``: the errors grow with the elevation that a plain stroke at
-        the pot needs. Default: a free cue.
+    most, threads, rails
+        Number of chances for each position; largest number of threads; those that a real cue passes over,
+        ``Planner.rules.rails``: the errors grow with the elevation that a plain stroke at the pot needs.
 
     Returns
     -------

@@ -117,10 +117,9 @@ class Search:
 
     Parameters
     ----------
-    judge : VisitJudge or FrameJudge
-        What is played where, and what the position that a stroke leaves is worth.
-    budget : int, optional
-        Simulated shots of a decision: at most in visits, at least 8; on average in frames, at least 30. Default 120.
+    judge, budget : VisitJudge or FrameJudge, int
+        What is played where, and what a stroke is worth; simulated shots of a decision: at most in visits, at least 8; on
+        average in frames, at least 30.
     propose : callable or sequence of callable, optional
         Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``; in frames one. Default: ``at_pots``.
 

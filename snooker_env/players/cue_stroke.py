@@ -28,11 +28,9 @@ class CueStroke:
 
     Parameters
     ----------
-    speed : float
-        Cue speed [m/s], in [0.2, 7].
-    aim : float
-        Direction in which the cue ball leaves the tip [rad], anticlockwise from +x. Squirt is compensated: with side, the
-        cue points in a slightly different direction. What the cloth does to the ball of a raised cue is not.
+    speed, aim : float
+        Cue speed [m/s], in [0.2, 7]; direction in which the cue ball leaves the tip [rad], anticlockwise from +x. Squirt is
+        compensated, what the cloth does to the ball of a raised cue is not.
     side, top, elevation : float
         Tip offsets to the right and upwards over R, within a disc of radius 0.5; elevation of the butt [rad], to 30 degrees.
     place : (float, float), optional
