@@ -1,7 +1,5 @@
-"""What is a stroke worth? In a visit its points, and the value of the position that it leaves; where strokes without a pot are
-tried, less the penalty of a foul and, if the visit ends, the share ``LEFT`` of what the position is worth to the opponent. In a
-frame pots, safeties and escapes are judged alike, by the points that they bring and the worth of what they leave to the next
-player (``worth``), and by the chance to win that follows."""
+"""What is a stroke worth? In a visit its points, and the value of what it leaves; in a frame pots, safeties and escapes are
+judged alike, by points, by the worth of what they leave to the next player (``worth``), and by the chance to win that follows."""
 
 from collections.abc import Callable
 from typing import TypeAlias

@@ -1,6 +1,5 @@
-"""How does a model of Stable-Baselines3 or sb3-contrib play? Its file is first read as plain data, without running anything: a zip
-of weights and ``data``, JSON in which all but plain values is a pickle, whose code runs when loaded. Only
-``SavedModel.network`` unpickles, and requires consent."""
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its zip is first read as plain data, without running anything: only
+``SavedModel.network`` unpickles its ``data``, whose code runs when loaded, and requires consent."""
 
 import zipfile
 from collections.abc import Iterator, Mapping

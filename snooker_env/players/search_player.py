@@ -1,7 +1,6 @@
-"""How do players search? By one ``Search``; a name may end in simulated shots: ``search_2000``. ``search`` judges by the rule of
-thumb and looks at strokes spread over the pots, ``planner`` by the learned value at those that the learned policy proposes, of
-the level of errors that it plays under. ``best_pot`` plays the likeliest pot. The ``tactician`` searches frames for pots, safeties
-and escapes, and takes all decisions of a frame by one worth for both players."""
+"""How do players search? ``search`` judges by the rule of thumb and looks at strokes spread over the pots, ``planner`` by the
+learned value at those that the learned policy proposes; ``best_pot`` plays the likeliest pot. The ``tactician`` searches frames
+for pots, safeties and escapes, and takes all decisions of a frame by one worth for both players."""
 
 from typing import NamedTuple
 

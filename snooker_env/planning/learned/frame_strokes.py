@@ -1,7 +1,6 @@
-"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is likely: of
-each it predicts where the cue ball and the first ball that it meets come to rest under a few errors (``cue_ball_path``), and a
-learned worth says what that brings the other player. A small network corrects what both kinds seem to be worth: the points that
-the striker scores from there on, less the other's. ``train.py --agent stroke_value`` trains it."""
+"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is likely: where
+both balls come to rest is predicted (``cue_ball_path``), and a learned worth says what that brings the other player. A network
+corrects what both kinds seem to be worth (``train.py --agent stroke_value``)."""
 
 from typing import NamedTuple
 

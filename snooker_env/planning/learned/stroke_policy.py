@@ -1,7 +1,6 @@
-"""How does a learned policy score and propose strokes while it plays? By kernels on NumPy arrays: a table's scores depend on
-that table alone. The network is that of ``agents.learning.networks``: for each ball, for each pot, sums, a context, scores of the
-540 choices. A softmax with ``TEMPERATURE`` makes probabilities, which are sampled systematically; a Sobol point moves each stroke
-within its choice's cell of speed, side and top."""
+"""How does a learned policy score and propose strokes while it plays? By kernels: a table's scores depend on that table alone.
+The network is that of ``agents.learning.networks``: for each ball, for each pot, sums, a context, scores of the 540 choices.
+A softmax makes probabilities, which are sampled systematically; a Sobol point moves each stroke within its choice's cell."""
 
 from collections.abc import Mapping
 

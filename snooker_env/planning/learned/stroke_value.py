@@ -1,6 +1,5 @@
-"""What is a stroke worth, without playing it? A policy proposes strokes at the pots; of each it predicts where it leaves the cue
-ball (``cue_ball_path``), under no error and under some, and a learned value says what such positions are worth. A small network
-weighs this against how sure the pot is: the points of the stroke and of the visit after it (``train.py --agent stroke_value``)."""
+"""What is a stroke worth, without playing it? A policy proposes strokes at the pots, where each leaves the cue ball is predicted
+(``cue_ball_path``), and a small network weighs the learned value of that against how sure the pot is."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
