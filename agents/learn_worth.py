@@ -29,7 +29,7 @@ with needs("agents.learn_worth"):
     from snooker_env.planning.learned.frame_features import read_errors
     from snooker_env.planning.learned.learned_worth import worth_of
     from snooker_env.players import player
-    from snooker_env.players.tactician import Tactician
+    from snooker_env.players.search_player import Tactician
     from snooker_env.players.weights import FOLDER, WORTH, learned_worth, worth_in
     from snooker_env.tasks import LEVELS
 

@@ -11,13 +11,16 @@ give equal strokes.
 import numpy as np
 
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Positions, pot_aim, pots
+from snooker_env.planning import Planner, Positions, pots
 from snooker_env.players import Strokes
 
 
 class Softly:
     """Plays the widest direct pot without spin, at a speed that grows with the cue ball's distance; otherwise full at a
     ball on."""
+
+    def __init__(self):
+        self._planner = Planner({})  # solves aims, with throw and swerve
 
     def at(self, rules):
         """Returns itself, because it plays in the same way everywhere."""
@@ -32,5 +35,5 @@ class Softly:
         x, y = (at.positions[np.arange(len(at)), balls] - at.positions[:, 0]).T
         speeds, aims, still = np.clip(1.5 + np.hypot(x, y), 0.5, 6.0), np.arctan2(y, x), np.zeros(len(at))
         targets = POCKET_AIMS[lines.pocket[rows, 0], :2]
-        aims[rows] = pot_aim(at, rows, balls[rows], targets, speeds[rows])  # with throw and swerve
+        aims[rows] = self._planner.pot_aim(at, rows, balls[rows], targets, speeds[rows])
         return Strokes(np.column_stack([speeds, still, still, aims, still]))

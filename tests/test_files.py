@@ -20,8 +20,8 @@ from snooker_env._lib.files import MOST_JSON, MOST_NPZ, read_npz, strict_json
 from snooker_env.advice import read_strokes
 from snooker_env.benchmark import TASKS, Agent, faults, judge
 from snooker_env.benchmark.results import read_result
-from snooker_env.players.requests import read_object
-from snooker_env.players.saved import saved_player
+from snooker_env.players.cue_stroke import read_object
+from snooker_env.players.saved_models import saved_player
 from tests.flips import flipped
 
 JSON = {

@@ -12,8 +12,7 @@ from snooker_env.checks import integer, number, refuse
 from snooker_env.players import SeenPlayer
 from snooker_env.players.model_options import options_of_words
 from snooker_env.players.resolver import is_name
-from snooker_env.players.saved import saved_player
-from snooker_env.players.saved_models import SavedModel
+from snooker_env.players.saved_models import SavedModel, saved_player
 
 from ..learning.model_files import Trained
 from ..learning.models import POLICY, PRETRAINED, file_of, pretrained_names

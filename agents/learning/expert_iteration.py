@@ -14,7 +14,7 @@ import numpy as np
 from snooker_env import SnookerVectorEnv
 from snooker_env.benchmark import count_shots
 from snooker_env.planning import Positions, Search, VisitJudge
-from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.learned.stroke_policy import PolicyProposals
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
 from .hyperparameters import SHOT_OPTIONS

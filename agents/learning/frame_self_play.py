@@ -16,7 +16,7 @@ from snooker_env.planning import Positions
 from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
 from snooker_env.players import player as snooker_player
-from snooker_env.players.tactician import Tactician
+from snooker_env.players.search_player import Tactician
 from snooker_env.tasks.frames import Asked, Frames, Seat
 from snooker_env.tasks.threads import Threads
 

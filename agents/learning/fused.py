@@ -14,11 +14,10 @@ import numpy as np
 import torch
 
 from snooker_env.game import N_BALLS
-from snooker_env.planning.learned import table_kernels
+from snooker_env.planning.learned import stroke_policy
 from snooker_env.planning.learned.dense_layers import relu
 from snooker_env.planning.learned.pot_view import POT_ENTRIES
-from snooker_env.planning.learned.stroke_policy import BLOCK, SCORED, StrokePolicy
-from snooker_env.planning.learned.table_kernels import BALL_INPUTS, STATE
+from snooker_env.planning.learned.stroke_policy import BALL_INPUTS, BLOCK, SCORED, STATE, StrokePolicy
 from snooker_env.tasks import CHOICES, POTS
 
 from . import fused_kernels as kernels
@@ -139,17 +138,17 @@ class FusedTable:
         """Compute the results of all layers for the tables seen[rows]. Returns their numbers of object balls."""
         layers = self._layers
         read = b.balls_, b.group, b.first, b.pots_, b.context_, b.sides
-        m = table_kernels.read_tables(rows, seen, read, b.at)
+        m = stroke_policy.read_tables(rows, seen, read, b.at)
         layers["ball_2"](_relu(layers["ball_1"](b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
-        table_kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
+        stroke_policy.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
         layers["pot_2"](_relu(layers["pot_1"](b.pots_, b.pot_1_)), b.pot_2_)
-        table_kernels.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
+        stroke_policy.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
         _relu(layers["context_2"](_relu(layers["context_1"](b.context_, b.context_1_)), b.context_2_))
         layers["shared"](b.context_2_, b.shared_)
         layers["joint"](b.pot_2_, b.joint_)
-        table_kernels.join(b.joint_, b.shared_, b.pots_)
+        stroke_policy.join(b.joint_, b.shared_, b.pots_)
         layers["scores"](b.joint_, b.scores_)
-        table_kernels.mask_scores(rows, masks, b.sides, b.scores_, b.by_table_)
+        stroke_policy.mask_scores(rows, masks, b.sides, b.scores_, b.by_table_)
         layers["value_2"](_relu(layers["value_1"](b.context_2_, b.value_1_)), b.value_2_)
         torch.softmax(b.by_table, 1, out=b.likely)
         return m

@@ -8,7 +8,7 @@ from math import exp, log
 import numpy as np
 
 from snooker_env.kernels import entry, kernel
-from snooker_env.planning.learned.table_kernels import mirror_choice
+from snooker_env.planning.learned.stroke_policy import mirror_choice
 from snooker_env.tasks import POTS
 
 _LEAST = 1e-30  # smaller ones are too close to the limit of float32

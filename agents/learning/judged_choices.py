@@ -33,14 +33,13 @@ class JudgedChoices:
     def __init__(self, policy, options, threads, n, rng):
         self._policy, self._rng, self._n = policy, rng, n
         self._planner = Planner(Options(action="discrete", **options), threads=threads)
-        self._cue = options.get("cue", "free")
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
         self.losses, self.shots = deque(maxlen=100), 0
 
     def round(self, at, value, remaining):
         """Try choices in ``Positions``, judge the resulting positions by ``value``, and learn. ``remaining``: share of training left."""
-        seen, masks = with_pots(at.observations()), action_masks(at, cue=self._cue)
+        seen, masks = with_pots(at.observations()), action_masks(at, rails=self._planner.rules.rails)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
         picks, valid = to_try(scores, masks, self._rng)

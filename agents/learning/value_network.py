@@ -1,7 +1,7 @@
 """How is the value of a position computed? V = P x U: the chance to score, times the points of the visit if it does.
 
 One small network with two outputs (``ValueNetwork``). P starts from the chance of the likeliest pot by its width;
-U is positive. It is trained with torch; ``snooker_env.planning.learned.learned_value`` plays the same weights.
+U is positive. It is trained with torch; ``snooker_env.planning.learned.learned_worth`` plays the same weights.
 """
 
 from itertools import pairwise
@@ -9,7 +9,7 @@ from itertools import pairwise
 import torch
 from torch import nn
 
-from snooker_env.planning.learned.learned_value import POINTS, LearnedValue
+from snooker_env.planning.learned.learned_worth import POINTS, LearnedValue
 from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 WIDTHS = (160, 96)

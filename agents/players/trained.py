@@ -33,7 +33,8 @@ class PolicyPlayer(ChoicePlayer):
 
     def scores(self, at, seeds):
         """The policy's logits, whose softmax are its probabilities."""
-        policy, masks, seen = self.model.policy, action_masks(at, cue=self.options.cue), at.observations()
+        policy, seen = self.model.policy, at.observations()
+        masks = action_masks(at, rails=self.options.rules.rails)
         plain = isinstance(policy, Layers)
         return np.where(masks, policy(seen) if plain else policy.fused.scores(seen_of(seen), masks), -np.inf)
 

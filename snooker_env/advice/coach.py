@@ -295,7 +295,7 @@ def _choose_drill(part: str, strokes: list[Recorded], cost: Estimate, lost: Floa
     if part == "position":
         return Drill(layout="line_up", reason=f"the positions left after pots cost {points}")
     if part == "safety":
-        hidden = ~clear_paths([one.position for one in strokes]).any_part
+        hidden = ~clear_paths([one.position for one in strokes])
         if lost[hidden].sum() > 0.5 * lost.sum():
             return Drill(layout="escape", reason=f"most of {points} lost in safety were lost when snookered")
         return Drill(layout="safety", reason=f"strokes that end the visit cost {points}")

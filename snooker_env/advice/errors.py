@@ -15,8 +15,8 @@ import numpy as np
 from .._lib.check import integer, refuse_what
 from .._lib.types import Bools, Floats
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS
+from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..planning import Positions
-from ..planning.aims import STEEPEST_CUE
 from ..planning.sobol import sobol_points
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE
 from .practice import Practice

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS, BAULK_Y
-from ..planning import Outcomes, Positions, clear_paths, obstructions
+from ..planning import Outcomes, Positions, clear_paths
+from ..planning.pot_geometry import obstructions
 from ..planning.worth import lead_of, left_of
 from ..players.cue_stroke import CueStroke
 from . import stroke_words as say
@@ -38,7 +39,7 @@ def intend(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[
     """What strokes do without errors in the one position ``at``."""
     starts = join([start_from(at, stroke) for stroke in strokes])
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
-    hidden = ~clear_paths(starts).any_part
+    hidden = ~clear_paths(starts)
     lies = _say_lies(stops) if at.of_frames else [""] * len(strokes)
     made = [
         _intend(practice, starts, stops, k, one, bool(hidden[k]), lies[k]) for k, one in enumerate(strokes)
@@ -115,7 +116,7 @@ def _say_lies(stops: Outcomes) -> list[str]:
     out, after = [""] * len(stops.first), stops.afterstates
     rows = np.flatnonzero(find_arrivals(after) & (stops.penalty == 0))
     theirs = arrive(after[rows])
-    seen = clear_paths(theirs).any_part
+    seen = clear_paths(theirs)
     for j, k in enumerate(rows.tolist()):
         x, y = theirs.positions[j, CUE].tolist()
         ball = -1 if seen[j] else _nearest_in_the_way(theirs, j)
@@ -128,7 +129,7 @@ def _nearest_in_the_way(at: Positions, k: int) -> int:
     """The ball nearest to the cue ball of those on its straight lines to the balls on; -1 if there is none."""
     here, on = at.positions[k], np.flatnonzero(at.balls_on[k])
     many, starts = np.arange(len(on)), np.repeat(here[None, CUE], len(on), 0)
-    hit = obstructions(at, np.full(len(on), k), starts, here[on], ignore=[CUE])
+    hit = obstructions(at, np.full(len(on), k), starts, here[on], np.array([CUE]))
     hit[many, on] = False
     way = np.flatnonzero(hit.any(axis=0))
     if not len(way):

@@ -183,7 +183,7 @@ def _look_ahead(
     wins = practice.judge.value_of(lead_of(starts)[each], after)[:, 0].reshape(n, -1)
     comes = np.flatnonzero(find_arrivals(after))
     theirs = arrive(after[comes])
-    hidden = ~clear_paths(theirs).any_part
+    hidden = ~clear_paths(theirs)
     groups = [np.flatnonzero(each[comes] == k) for k in range(n)]
     out = []
     for mine, group, rest in zip(

@@ -17,8 +17,8 @@ from ..planning.trials import turn_to_striker
 from ..planning.worth import apply_decision
 from ..players.cue_stroke import CueStroke
 from ..players.player import place_cue_balls
+from ..players.search_player import Tactician
 from ..players.seen import begun
-from ..players.tactician import Tactician
 from ..tasks.noise import Noise
 from ..tasks.options import Options
 from ..tasks.tables import Tables

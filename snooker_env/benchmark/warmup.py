@@ -20,9 +20,10 @@ from ..game.in_hand import place_cue
 from ..game.pots import pots as pots_of
 from ..game.referee import Situation, Stroke, judge
 from ..game.snookered import is_snookered
-from ..planning import Planner, Position, Positions, clear_paths, obstructions, pots, prospects_of
+from ..planning import Planner, Position, Positions, clear_paths, pots, prospects_of
+from ..planning.judges import VisitJudge
+from ..planning.pot_geometry import obstructions
 from ..planning.proposals import at_balls, over_cushions
-from ..planning.visit_judge import VisitJudge
 from ..planning.worth import best_places, decide
 from ..players import player
 from ..progress import ticking
@@ -121,7 +122,7 @@ def _plan(env: SnookerEnv, match: SnookerEnv) -> None:
     planner.play(at, [0], [0])
     planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
     Planner({"noise": "club"}).play_strokes(at, [0], [[1.0, 0.0, 0.0, 0.0, 0.0]], [0])
-    obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+    obstructions(at, np.zeros(1, np.int64), np.zeros((1, 2)), np.ones((1, 2)), np.zeros((1, 1), np.int64))
     room_for(np.zeros(5), at, Options(cue="real").rules)
     prospects_of(at, Spread(1e-3))
     chance_at(1.0, 1.0, Spread(1e-3))

@@ -20,8 +20,8 @@ from ..planning import Positions
 from ..play.routes import GET, POST, answer
 from ..play.service import OFFERED, PERSON, Seats, Service
 from ..play.session import Session
+from ..players.cue_stroke import STROKE
 from ..players.program import ProgramPlayer
-from ..players.requests import STROKE
 from ..players.seen import begun
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options

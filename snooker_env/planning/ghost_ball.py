@@ -51,9 +51,8 @@ def _goes_in(positions, ball, ux, uy, v2):
 
 @kernel
 def soft(positions, on_table, on, touching, drive, rows):
-    """The soft stroke at the nearest ball on with a window that a player cannot miss: (speed, top, direction)
-    and half the window [rad], 0: none. It is aimed at the middle of what is seen; where the cue ball would
-    follow into a pocket, halfway to an edge, or so that it stops at the ball."""
+    """The soft stroke at the nearest ball on that a player cannot miss: (speed, top, direction), half the window [rad], 0: none.
+    It is aimed at the middle of what is seen; where the cue ball would follow into a pocket, aside, or so that it stops there."""
     x, y = positions[0, 0], positions[0, 1]
     best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, rows[POTS:]
     many = open_windows(positions, on_table, on, touching, windows)
@@ -104,8 +103,7 @@ def _escape(positions, on_table, on, vary, lines, stream):
 
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, rows, stream):
-    """A stroke without a pot: (speed, side, top, direction): away from a touching ball on; else soft; else an
-    escape; else at a ball on. ``vary``: one from here has failed; ``drive`` [m]."""
+    """Without a pot: away from a touching ball on; else soft; else an escape; else at a ball on. ``vary``: one has failed."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):
@@ -230,9 +228,7 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     placed = row[columns.IN_HAND]
     speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
     speed *= 1.0 + (0.04 if placed and end_red_of_rack(positions, on_table) else 0.2) * (jitter - 0.5)
-    speed = max(
-        MIN_SPEED, speed
-    )  # a ball a few millimetres away would be struck more softly than anybody can
+    speed = max(MIN_SPEED, speed)  # at a ball a few millimetres away it is softer than anybody can strike
     return speed, side, top, aim, nominate_on_line(positions, on_table, row, aim) if frame else AUTO, decision
 
 
@@ -240,9 +236,8 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
 def geometric_strokes(
     positions, on_table, game, rules, streams, strokes, places, nominated, decisions, visits, pots
 ):
-    """The geometric player's strokes (n, 5), the places (n, 2) of cue balls in hand, NaN where there is none, nominations
-    and decisions (n,). Then the arrays of the tables are those it strikes on, as ``visits`` (n, 5), and ``pots`` (n,) is
-    True where it may solve the aim of a pot."""
+    """Fill the geometric player's strokes, places (NaN: none), nominations and decisions; ``pots``: where an aim is solved.
+    Then the arrays of the tables are those it strikes on, as ``visits`` (n, 5)."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         p, on, row, visit, reds = positions[k], on_table[k], game[k], visits[k], 0

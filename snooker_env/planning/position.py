@@ -8,23 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._lib.check import array, choice, integer, refuse, refuse_what, truth
 from .._lib.files import in_file, read_json, write_atomic
-from .._lib.types import Flags, Integers, Place, Vectors
-from ..game.balls import (
-    COLOUR_NAMES,
-    CUE,
-    N_BALLS,
-    N_REDS,
-    SPOTS,
-    YELLOW,
-    BallOn,
-    check_ball_on,
-    mask_of_present,
-    next_on,
-)
+from .._lib.types import Bools, Flags, Floats, Integers, Ints, Place, Vectors
+from ..game.balls import COLOUR_NAMES, CUE, N_REDS, SPOTS, BallOn, check_ball_on, mask_of_present, next_on
 from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
@@ -44,19 +32,17 @@ class Position:
         Centre of the cue ball [m] from the table's centre, +x to the yellow side, +y to the black end. Left
         out with ``in_hand=True``, it lies at the free place of the D nearest to (0.18, -1.0475).
     reds : sequence of (float, float), optional
-        Up to 15 centres [m], which get the ids 1, 2, ... in this order. Default: none.
+        Up to 15 centres [m], which get the ids 1, 2, ... in this order.
     yellow, green, brown, blue, pink, black : (float, float), optional
         Centres [m]. A ball that is left out is off the table.
     on : str, optional
         What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour.
         Default: "red" while there is a red, else the lowest colour.
-    in_hand, over : bool, optional
+    in_hand, over, points : bool, bool, int, optional
         Whether the cue ball may be placed in the D before the stroke; whether the visit has ended: then
-        anything may be on, and the cue ball may be missing. Default False.
-    points : int, optional
-        Points of the visit so far, in [0, 155]; default 0.
+        anything may be on, and the cue ball may be missing; points of the visit so far, in [0, 155].
     table : str, Table or None, optional
-        The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
+        The table that the balls must fit on, not stored; None: unbounded cloth.
 
     Examples
     --------
@@ -107,8 +93,8 @@ class Position:
                 what = f"must be False with the cue ball at ({x:g}, {y:g}), outside the D"
                 raise refuse("in_hand", True, what)
 
-    def _layout(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, np.bool_)
+    def _layout(self) -> tuple[Floats, Bools]:
+        positions, on_table = np.zeros(SPOTS.shape), np.zeros(len(SPOTS), np.bool_)
         colours = [getattr(self, name) for name in COLOUR_NAMES]
         spare = [None] * (N_REDS - len(self.reds))
         for ball, place in enumerate([self.cue, *self.reds, *spare, *colours]):
@@ -116,9 +102,8 @@ class Position:
                 positions[ball], on_table[ball] = place, True
         return positions, on_table
 
-    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-        """Return the arrays of a ``Positions``: centres [m] (22, 2), on_table (22,), game int64 (5,): the ball
-        on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0)."""
+    def arrays(self) -> tuple[Floats, Bools, Ints]:
+        """Return its rows of the arrays of a ``Positions``: positions (22, 2), on_table (22,) and game (5,)."""
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
 
@@ -127,8 +112,7 @@ class Position:
         """Make the ``Position`` of one table's arrays, see ``arrays``; reds are numbered anew."""
         places, present = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
-        ids = {"cue": CUE, **dict(zip(COLOUR_NAMES, range(YELLOW, N_BALLS), strict=True))}
-        balls = {name: tuple(places[i]) for name, i in ids.items() if present[i]}
+        balls: dict[str, Any] = {_name(i): tuple(places[i]) for i in (CUE, *_COLOURS) if present[i]}
         balls["reds"] = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
         visit = {"in_hand": bool(in_hand), "points": points, "over": bool(over)}
         return cls(**balls, on=BallOn(ball_on).name.lower(), **visit, table=None)
@@ -157,25 +141,23 @@ class Position:
 
 
 _NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
+_COLOURS = range(N_REDS + 1, len(SPOTS))
+_MADE = Position.__init__
 
 
-def _with_names(init: Any) -> Any:
+@wraps(_MADE)
+def _init(self: Position, *args: Any, **fields_: Any) -> None:
     """``Position.__init__`` whose TypeError says which fields there are, and that the reds are one list."""
     names = (*_NAMES, "table")
-
-    @wraps(init)
-    def check_first(self: Position, *args: Any, **fields_: Any) -> None:
-        for name in fields_:
-            if name not in names:
-                reds, known = "the reds are one list, reds=[(x, y), ...]", ", ".join(names)
-                hint = reds if name.startswith("red") else f"the fields are {known}"
-                raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
-        init(self, *args, **fields_)
-
-    return check_first
+    for name in fields_:
+        if name not in names:
+            reds, known = "the reds are one list, reds=[(x, y), ...]", ", ".join(names)
+            hint = reds if name.startswith("red") else f"the fields are {known}"
+            raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
+    _MADE(self, *args, **fields_)
 
 
-Position.__init__ = _with_names(Position.__init__)
+Position.__init__ = _init
 
 
 def _name_on(on: object, balls: int) -> str:
@@ -195,7 +177,7 @@ def _name(ball: int) -> str:
     return f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
 
 
-def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
+def _check_layout(positions: Floats, on_table: Bools, table: Table) -> None:
     """Raise ValueError, naming the ball, unless the balls fit on the table."""
     for ball in np.flatnonzero(on_table).tolist():
         try:
@@ -211,7 +193,7 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
             raise refuse(_name(ball), place, what)
 
 
-def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
+def check_playable(on_table: Bools, ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
     """Raise ValueError, with these names of fields, unless there is a stroke to play."""
     present = mask_of_present(on_table)
     if not present & 1:
@@ -227,14 +209,8 @@ def _check(raw: object, field: str = "position") -> Mapping[str, Any]:
     for key in raw:
         choice(f"key of {field}", key, _NAMES)
     for key, value in raw.items():
-        # NumPy converts them to 0 and 1
-        if any(isinstance(x, bool) for place in _places(value) for x in place):
+        one = value if isinstance(value, list | tuple) else ()
+        places = [part for part in one if isinstance(part, list | tuple)] or [one]
+        if any(isinstance(x, bool) for place in places for x in place):  # NumPy converts them to 0 and 1
             raise refuse(key, value, "must be two real numbers" + (" for each ball" if key == "reds" else ""))
     return raw
-
-
-def _places(value: object) -> list[Any]:
-    """The lists of numbers in a value: of one ball, or of several."""
-    if not isinstance(value, list | tuple):
-        return []
-    return [part for part in value if isinstance(part, list | tuple)] or [value]

@@ -6,9 +6,9 @@ from typing import Any, TypeAlias, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .._lib.check import array, refuse, refuse_what
+from .._lib.check import array, integer, refuse, refuse_what
 from .._lib.jit import entry
-from .._lib.types import Batches, Environment, FlagRows, Integers, Ints, Vectors
+from .._lib.types import Batches, Bools, Environment, FlagRows, Floats, Integers, Ints, Singles, Vectors
 from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
@@ -30,31 +30,35 @@ def _balls_on(on_table, game, out):
             out[k, i] = (on >> i) & 1
 
 
+def _flag(column: int, about: str, value: int | None = None) -> Any:
+    """A property of ``Positions``: whether a column of the game has this value, or any but 0; without the column never."""
+
+    def read(self: "Positions") -> Bools:
+        if column >= self.game.shape[1]:
+            return np.zeros(len(self), np.bool_)
+        return self.game[:, column] != 0 if value is None else self.game[:, column] == value
+
+    never = "; in visits never." if column >= columns.VISIT_COLUMNS else ""
+    return property(read, doc=f"{about}, bool (m,){never}")
+
+
 class Positions:
     """m positions, each with a stroke to play in a visit or in a frame, as arrays.
 
-    Positions of frames are seen by the striker, who is player 0 in them, and hold all that a player of frames
-    may know. Planning plays their strokes as those of visits, see ``as_visits``.
-
-    ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives
-    ``Positions``: a view for a slice, else a copy. ValueError if an array has the wrong shape or type, or a number is
-    not finite; overlaps are refused when played.
+    Positions of frames are seen by the striker, who is player 0 in them. ``positions[3]`` is one ``Position``. Any other
+    NumPy index (a slice, a mask, a list of rows) gives ``Positions``: a view for a slice, else a copy. ValueError if an
+    array has the wrong shape or type, or a number is not finite; overlaps are refused when played.
 
     Parameters
     ----------
-    positions : array_like
-        float (m, 22, 2). Centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
-    on_table : array_like
-        bool (m, 22). Which balls are on the table.
+    positions, on_table : array_like
+        float (m, 22, 2), centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black; bool (m, 22).
     game : array_like
         int (m, 5), of visits: the ball on (a ``BallOn``), whether the cue ball is in hand, points of the
-        visit, whether it is over, strokes so far. Or int (m, 33), of frames: the columns of
-        ``snooker_env.game.frame_columns``, with the striker as player 0.
-    saved : Layouts, optional
-        Of frames: the balls before the last foul, which "replace" restores. Default None.
-    conditions : array_like, optional
-        float (m, 8). The constants of each table, in the order of ``physics.conditions.RANGES``, of an
-        environment with ``conditions="drawn"``: planners with that option plan with them. Default None.
+        visit, whether it is over, strokes so far. Or int (m, 33), of frames: ``snooker_env.game.frame_columns``.
+    saved, conditions : optional
+        Of frames: the balls before the last foul, ``Layouts``, which "replace" restores; float (m, 8), the constants of each
+        table with ``conditions="drawn"``, in the order of ``physics.conditions.RANGES``.
 
     Examples
     --------
@@ -75,7 +79,7 @@ class Positions:
         saved: columns.Layouts | None = None,
         conditions: Vectors | None = None,
     ):
-        self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
+        self.positions: Floats = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
         present, held = np.asarray(on_table), np.asarray(game)
         if present.shape != (m, N_BALLS) or present.dtype != np.bool_:
@@ -85,19 +89,18 @@ class Positions:
         if held.shape not in (visits, frames) or held.dtype.kind not in "iu":
             allowed = f"must be integers of shape {visits}, or {frames} of frames"
             raise refuse_what("game", f"{held.dtype} array of shape {held.shape}", allowed)
-        self.on_table: NDArray[np.bool_] = np.ascontiguousarray(present)
-        self.game: NDArray[np.int64] = np.ascontiguousarray(held, np.int64)
+        self.on_table: Bools = np.ascontiguousarray(present)
+        self.game: Ints = np.ascontiguousarray(held, np.int64)
         self.saved: columns.Layouts | None = saved
         own = None if conditions is None else array("conditions", conditions, (m, CONDITIONS))
-        self.conditions: NDArray[np.float64] | None = own
+        self.conditions: Floats | None = own
 
     @classmethod
     def of(cls, source: "PositionsLike") -> "Positions":
         """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
-        An environment, of one table or many, wrapped or not, gives all current tables, those of frames as
-        their strikers see them. Or a ``Position``, a visit's state, a dict of ``to_dict()``, or a list of
-        these."""
+        An environment, of one table or many, wrapped or not, gives all current tables. Or a ``Position``, a visit's state,
+        a dict of ``to_dict()``, or a list of these."""
         if isinstance(source, Positions):
             return source
         if isinstance(source, Position | Mapping):
@@ -132,10 +135,9 @@ class Positions:
         for name in ("positions", "on_table", "game"):
             # the kernels are compiled for contiguous arrays
             setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))
-        saved = self.saved
+        saved, own = self.saved, self.conditions
         held: Any = saved and (np.ascontiguousarray(each[rows]) for each in saved)
         taken.saved = saved and columns.Layouts(*held)
-        own = self.conditions
         taken.conditions = None if own is None else np.ascontiguousarray(own[rows])
         return taken
 
@@ -151,8 +153,8 @@ class Positions:
     def as_visits(self) -> "Positions":
         """Return positions of visits, with ``game`` (m, 5), that share the balls' places; visits as they are.
 
-        With a free ball any colour is on, which is right in all but what it scores. A cue ball that may stand
-        anywhere is played from where it lies: visits have no ball in hand outside the D."""
+        With a free ball any colour is on, which is right in all but what it scores. A cue ball that may stand anywhere is
+        played from where it lies."""
         if not self.of_frames:
             return self
         game = as_visits(self.game)[:, : columns.VISIT_COLUMNS]
@@ -160,8 +162,7 @@ class Positions:
         return Positions(self.positions, self.on_table, game, None, self.conditions)
 
     def known_to(self, rules: Rules) -> "Positions":
-        """Return them as who plays under these rules knows them: with the constants of the tables where these
-        are drawn; else without, so that all plans are made with the nominal ones."""
+        """Return them with the constants of the tables where these rules draw them; else without, for the nominal ones."""
         if rules.drawn or self.conditions is None:
             return self
         return Positions(self.positions, self.on_table, self.game, self.saved)
@@ -171,85 +172,54 @@ class Positions:
         """Whether these are positions of frames, not of visits, a bool."""
         return self.game.shape[1] == columns.COLUMNS
 
-    def _of_frame(self, *which: int) -> NDArray[np.int64]:
+    def _of_frame(self, *which: int) -> Ints:
         """The columns of frames, int64 (m, k); of visits all 0."""
         return self.game[:, which] if self.of_frames else np.zeros((len(self), len(which)), np.int64)
 
-    @property
-    def free_ball(self) -> NDArray[np.bool_]:
-        """Whether the striker has a free ball, bool (m,); in visits never."""
-        return self._of_frame(columns.FREE_BALL)[:, 0] != 0
+    free_ball: Bools = _flag(columns.FREE_BALL, "Whether the striker has a free ball")
+    anywhere: Bools = _flag(columns.ANYWHERE, "Whether the cue ball in hand may be placed anywhere")
+    choice: Bools = _flag(columns.PHASE, "Whether the striker may choose what follows a foul", columns.CHOICE)
+    lot: Bools = _flag(columns.PHASE, "Whether the striker may choose who begins, by lot", columns.LOT)
+    miss_called: Bools = _flag(columns.MISS_CALLED, "Whether the opponent's foul was called a miss")
+    respotted_black: Bools = _flag(columns.RESPOTTED_BLACK, "Whether the re-spotted black decides the frame")
+    in_hand: Bools = _flag(columns.IN_HAND, "Whether the cue ball is in hand")
+    over: Bools = _flag(columns.OVER, "Whether the visit has ended")
 
     @property
-    def anywhere(self) -> NDArray[np.bool_]:
-        """Whether the cue ball in hand may be placed anywhere on the table, bool (m,); in visits never."""
-        return self._of_frame(columns.ANYWHERE)[:, 0] != 0
-
-    @property
-    def choice(self) -> NDArray[np.bool_]:
-        """Whether the striker may choose what follows the opponent's foul, bool (m,); in visits never."""
-        return self._of_frame(columns.PHASE)[:, 0] == columns.CHOICE
-
-    @property
-    def lot(self) -> NDArray[np.bool_]:
-        """Whether the striker has won the lot and may choose who begins, bool (m,); in visits never."""
-        return self._of_frame(columns.PHASE)[:, 0] == columns.LOT
-
-    @property
-    def miss_called(self) -> NDArray[np.bool_]:
-        """Whether the opponent's foul was called a miss, bool (m,); in visits never."""
-        return self._of_frame(columns.MISS_CALLED)[:, 0] != 0
-
-    @property
-    def respotted_black(self) -> NDArray[np.bool_]:
-        """Whether the frame is decided on the re-spotted black, bool (m,); in visits never."""
-        return self._of_frame(columns.RESPOTTED_BLACK)[:, 0] != 0
-
-    @property
-    def scores(self) -> NDArray[np.int64]:
+    def scores(self) -> Ints:
         """Scores of the striker and of the opponent, int64 (m, 2); in visits 0."""
         return self._of_frame(columns.SCORE_0, columns.SCORE_1)
 
     @property
-    def frames_won(self) -> NDArray[np.int64]:
+    def frames_won(self) -> Ints:
         """Frames of the match that the striker and the opponent have won, int64 (m, 2); in visits 0."""
         return self._of_frame(columns.FRAMES_0, columns.FRAMES_1)
 
     @property
-    def ball_on(self) -> NDArray[np.int64]:
+    def ball_on(self) -> Ints:
         """What must be struck first, a ``BallOn``, without regard to a free ball: int64 (m,), a view."""
         return self.game[:, columns.BALL_ON]
 
     @property
-    def in_hand(self) -> NDArray[np.bool_]:
-        """Whether the cue ball is in hand, bool (m,)."""
-        return self.game[:, columns.IN_HAND] != 0
-
-    @property
-    def points(self) -> NDArray[np.int64]:
+    def points(self) -> Ints:
         """Points of each visit so far, int64 (m,); a view."""
         return self.game[:, columns.POINTS]
 
     @property
-    def over(self) -> NDArray[np.bool_]:
-        """Whether the visit has ended, bool (m,)."""
-        return self.game[:, columns.OVER] != 0
-
-    @property
-    def balls_on(self) -> NDArray[np.bool_]:
+    def balls_on(self) -> Bools:
         """Which balls may be struck first, bool (m, 22); with a free ball all colours, too."""
         out = np.empty((len(self), N_BALLS), np.bool_)
         _balls_on(self.on_table, self.game, out)
         return out
 
-    def observations(self) -> NDArray[np.float32]:
+    def observations(self) -> Singles:
         """The flat observation of each position, as ``observation="flat"`` of a visit: float32 (m, 121)."""
         out, game = np.empty((len(self), SIZE), np.float32), self.as_visits().game
         observe(np.arange(len(self)), self.positions, self.on_table, game, FLAT, out)
         return out
 
 
-def _floats(field: str, values: object, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _floats(field: str, values: object, shape: tuple[int, ...]) -> Floats:
     """``check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
     right = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:]
@@ -257,7 +227,7 @@ def _floats(field: str, values: object, shape: tuple[int, ...]) -> NDArray[np.fl
     return a if right and plain and np.isfinite(a).all() else array(field, values, shape)
 
 
-def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
+def _arrays(one: Any) -> tuple[Floats, Bools, Ints]:
     """The three arrays of a ``Position`` or a state."""
     if isinstance(one, Position):
         return one.arrays()
@@ -289,24 +259,19 @@ def of_tables(tables: Tables) -> Positions:
     return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts, own)
 
 
-PositionsLike: TypeAlias = (
-    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
-)
+_One: TypeAlias = Position | Mapping[str, Any]
+PositionsLike: TypeAlias = Environment | Positions | _One | Sequence[_One]
 """The types that arguments called ``positions`` accept, see ``Positions.of``."""
 
 
-def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.int64]:
-    """``rows`` as an int64 array (n,); ValueError unless each is a row of the positions."""
-    a = np.asarray(rows)
-    if a.size == 0:
-        a = a.astype(np.int64)
-    if a.ndim != 1 or a.dtype.kind not in "iu" or (n is not None and len(a) != n):
-        want = "(n,)" if n is None else f"({n},)"
-        raise refuse_what("rows", f"{a.dtype} array of shape {a.shape}", f"must be integers of shape {want}")
-    wrong = (a < 0) | (a >= len(at))
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise refuse(f"rows[{i}]", int(a[i]), f"must be in [0, {len(at)}): a row of the positions")
+def integers(field: str, values: Integers, low: int, high: int, n: int | None = None) -> Ints:
+    """``values`` as int64 (n,); ValueError names the first that is not in [low, high]."""
+    a = np.asarray(values)
+    if a.ndim != 1 or (a.size and a.dtype.kind not in "iu") or (n is not None and len(a) != n):
+        allowed = f"must be integers of shape ({'n' if n is None else n},)"
+        raise refuse_what(field, f"{a.dtype} array of shape {a.shape}", allowed)
+    for k in np.flatnonzero((a < low) | (a > high))[:1].tolist():
+        integer(f"{field}[{k}]", int(a[k]), low, high)
     return np.ascontiguousarray(a, np.int64)
 
 
@@ -319,7 +284,7 @@ def seeds_of(seeds: Integers, n: int) -> Ints:
     return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
 
 
-def check_has_stroke(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
+def check_has_stroke(at: Positions, rows: Ints, table: Table, radius: float) -> None:
     """Raise ValueError unless each position in ``rows`` (n,) is valid and has a stroke to play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]

@@ -1,35 +1,37 @@
-"""Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path and clear
-paths, along straight lines: no throw, no spin, no cushions. ``pot_aim`` corrects the aim for these."""
+"""Which pots does a position offer, what is in the way, and how good is it? By straight lines: no throw, spin or cushions."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .._lib.check import array, integer
+from .._lib.check import integer
 from .._lib.jit import entry
-from .._lib.types import Integers, Vectors
+from .._lib.types import Bools, Floats, Ints
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
-from ..game.paths import clear_path, full_ball_path
+from ..game.paths import clear_path
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.snookered import segment_distance
 from ..geometry import BALL_RADIUS
+from ..physics.cue_room import NO_RAILS
 from ..physics.table import Table
 from ..tasks.discrete_actions import POTS
-from .positions import Positions, PositionsLike, rows_of
+from ..tasks.noise import Spread
+from ..tasks.pot_chance import RULE_OF_THUMB, points_left, worth_of_pots
+from .positions import Positions, PositionsLike
+
+WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
 
 
 class Pots(NamedTuple):
     """The direct pots of m positions, widest tolerance first, as returned by ``pots``.
 
-    Beyond a position's last pot ``ball`` and ``pocket`` hold -1, the other arrays 0.
-
     Attributes
     ----------
     ball, pocket : numpy.ndarray
-        int64 (m, most). Id of the ball to pot, and index into ``snooker_env.POCKETS``.
+        int64 (m, most). Id of the ball to pot, index into ``snooker_env.POCKETS``; -1 beyond the last pot.
     ghost : numpy.ndarray
         float64 (m, most, 2). Centre of the cue ball [m] when it touches the object ball.
     cut, tolerance : numpy.ndarray
@@ -44,18 +46,11 @@ class Pots(NamedTuple):
     ([-0.0495, 1.443], 1.265)
     """
 
-    ball: NDArray[np.int64]
-    pocket: NDArray[np.int64]
-    ghost: NDArray[np.float64]
-    cut: NDArray[np.float64]
-    tolerance: NDArray[np.float64]
-
-
-class Paths(NamedTuple):
-    """Whether the cue ball has a clear straight path in each of m positions, see ``clear_paths``."""
-
-    any_part: NDArray[np.bool_]
-    full_ball: NDArray[np.bool_]
+    ball: Ints
+    pocket: Ints
+    ghost: Floats
+    cut: Floats
+    tolerance: Floats
 
 
 @entry(what="the pots of positions", seconds=1)
@@ -74,10 +69,8 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
 
     Parameters
     ----------
-    positions : PositionsLike
-        The m positions: anything that ``Positions.of`` accepts.
-    most : int, optional
-        Largest number of pots for each position, in [1, 126]; default 4, as ``action="discrete"`` has.
+    positions, most
+        The m positions, see ``Positions.of``; the largest number of pots for each, in [1, 126].
 
     Returns
     -------
@@ -108,81 +101,115 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
             out[j, i] = here[i] and segment_distance(p[i, 0], p[i, 1], ax, ay, bx, by) < reach
 
 
-def obstructions(
-    positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
-) -> NDArray[np.bool_]:
-    """Find the balls in the way of a ball that runs straight: those with centres nearer than 2 R to its path.
-
-    Parameters
-    ----------
-    positions : PositionsLike
-        The m positions: anything that ``Positions.of`` accepts.
-    rows, starts, ends : array_like
-        int (n,), row of ``positions`` for each path, in [0, m); float (n, 2), first and last point of the
-        running ball's centre [m].
-    ignore : array_like, optional
-        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target.
-
-    Returns
-    -------
-    numpy.ndarray
-        bool (n, 22). Whether each ball is in the way.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, obstructions
-    >>> position = Position(cue=(0.0, 0.0), reds=[(0.3, 0.01), (0.6, 0.0)])
-    >>> obstructions(position, [0], [(0.0, 0.0)], [(0.6, 0.0)], ignore=[0, 2]).nonzero()[1].tolist()
-    [1]
-    """
-    at = Positions.of(positions)
-    which = rows_of(at, rows)
-    n = len(which)
-    a, b = array("starts", starts, (n, 2)), array("ends", ends, (n, 2))
-    left_out = np.asarray(ignore, np.int64)
-    out = np.empty((n, N_BALLS), np.bool_)
-    _obstructions(at.positions, at.on_table, which, a, b, 2.0 * BALL_RADIUS * (1.0 - 1e-9), out)
-    if left_out.size:
-        each = np.broadcast_to(left_out, (n, left_out.shape[-1]))
-        for ball in (each.min(), each.max()):
-            integer("ignore", int(ball), 0, N_BALLS - 1)
-        out[np.arange(n)[:, None], each] = False
+def obstructions(at: Positions, rows: Ints, starts: Floats, ends: Floats, ignore: Ints) -> Bools:
+    """Which balls are nearer than 2 R to the straight paths (n, 2) of a ball's centre in ``at[rows]``, but for the ids
+    ``ignore`` (n, j): (n, 22)."""
+    out = np.empty((len(rows), N_BALLS), np.bool_)
+    _obstructions(at.positions, at.on_table, rows, starts, ends, 2.0 * BALL_RADIUS * (1.0 - 1e-9), out)
+    out[np.arange(len(rows))[:, None], ignore] = False
     return out
 
 
 @entry(what="the clear paths of positions", seconds=2, uses=())
-def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
-    for k in range(len(any_part)):
+def _clear_paths(positions, on_table, game, noses, jaws, clear):
+    for k in range(len(clear)):
         p, here = positions[k], on_table[k]
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
-        any_part[k] = here[0] and clear_path(p, here, on, noses, jaws, BALL_RADIUS)
-        full_ball[k] = here[0] and full_ball_path(p, here, on, noses, jaws, BALL_RADIUS)
+        clear[k] = here[0] and clear_path(p, here, on, noses, jaws, BALL_RADIUS)
 
 
-def clear_paths(positions: PositionsLike) -> Paths:
-    """Determine whether the cue ball can roll straight to a ball on, touching no other ball or cushion first.
+def clear_paths(positions: PositionsLike) -> Bools:
+    """Determine whether the cue ball can roll straight to some part of a ball on, touching no other ball or cushion first.
 
     Parameters
     ----------
     positions : PositionsLike
-        The m positions: anything that ``Positions.of`` accepts.
+        The m positions, see ``Positions.of``.
 
     Returns
     -------
-    Paths
-        Two bool arrays (m,), ``any_part`` and ``full_ball``: whether a straight path leads to some part, and to the full
-        face, of a ball on, by the foul-and-miss rule (``snooker_env.game.paths``) with the cushions of the match
-        table; False without a cue ball.
+    numpy.ndarray
+        bool (m,), by the foul-and-miss rule (``snooker_env.game.paths``) on the match table; False without a cue ball.
 
     Examples
     --------
     >>> from snooker_env.planning import Position, clear_paths
-    >>> hidden = Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], black=(0.3, 0.01), on="red")
-    >>> bool(clear_paths(hidden).full_ball[0])
-    False
+    >>> clear_paths(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], black=(0.3, 0.0), on="red")).tolist()
+    [False]
     """
-    at = Positions.of(positions).as_visits()
-    out = Paths(np.zeros(len(at), np.bool_), np.zeros(len(at), np.bool_))
-    table = Table.preset("match")
-    _clear_paths(at.positions, at.on_table, at.game, table.noses, table.jaws, *out)
-    return out
+    at, table = Positions.of(positions).as_visits(), Table.preset("match")
+    clear = np.zeros(len(at), np.bool_)
+    _clear_paths(at.positions, at.on_table, at.game, table.noses, table.jaws, clear)
+    return clear
+
+
+@entry(what="the value of positions", seconds=1)
+def _prospects(positions, on_table, ball_on, spread, constants, rails, values, chances):
+    """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
+    lines = np.empty((16, POT_COLUMNS))
+    for k in range(len(values)):
+        chances[k, :] = 0.0
+        p, here, own = positions[k], on_table[k], chances[k]
+        on = balls_on_kernel(ball_on[k], bits(here))
+        many = find_pots(p, here, on, BALL_RADIUS, lines) if here[0] else 0
+        left = points_left(here, ball_on[k])
+        values[k], _, _ = worth_of_pots(lines, many, p, here, left, spread, constants, rails, own)
+
+
+def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
+    """Call ``fill`` with slices of n positions, on as many threads as are worth it, at most ``threads``."""
+    threads = min(threads, n // WORTH_A_THREAD)
+    if threads <= 1:
+        fill(slice(0, n))
+        return
+    ends = np.linspace(0, n, threads + 1).astype(int).tolist()
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
+
+
+def prospects_of(
+    at: Positions,
+    spread: Spread,
+    constants: tuple[float, float, float, float] = RULE_OF_THUMB,
+    most: int = POTS,
+    threads: int = 1,
+    rails: Floats = NO_RAILS,
+) -> tuple[Floats, Floats]:
+    """Estimate the value of positions and the chances of their pots by a rule of thumb.
+
+    The chance of a pot is that of an error within its tolerance; its value that times its points plus what may follow, less
+    from far. Small shares of the second and third best pot count too.
+
+    Parameters
+    ----------
+    at, spread, constants
+        The n positions; the law of the cue ball's direction, ``Noise.spread``; ``RULE_OF_THUMB``, or ``SURE`` for a player
+        without execution errors.
+    most, threads, rails
+        Number of chances for each position; largest number of threads; those that a real cue passes over,
+        ``Planner.rules.rails``: the errors grow with the elevation that a plain stroke at the pot needs.
+
+    Returns
+    -------
+    values, chances : numpy.ndarray
+        float64 (n,), values of the positions [points]; float64 (n, most), chance of each of the widest pots,
+        in the order of ``pots``; 0 where there is none.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, Positions, prospects_of
+    >>> from snooker_env.tasks import LEVELS
+    >>> spread = LEVELS["professional"].spread()
+    >>> values, chances = prospects_of(Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))), spread)
+    >>> bool(values[0] > 0), chances.shape
+    (True, (1, 4))
+    """
+    at, n = at.as_visits(), len(at)
+    values, chances, balls = np.empty(n), np.empty((n, most)), (at.positions, at.on_table, at.ball_on.copy())
+    over = np.array(rails)  # kernels are compiled for arrays that can be written
+
+    def fill(rows: slice) -> None:
+        _prospects(*(part[rows] for part in balls), spread, constants, over, values[rows], chances[rows])
+
+    in_parts(n, threads, fill)
+    return values, chances

@@ -1,15 +1,9 @@
-"""Which strokes are worth a look? Generators of continuous strokes: at the direct pots, at the balls on that
-are seen, over cushions. Each is called with a search, n positions, a number m and n seeds, and returns m
-strokes for each position that it has any for.
+"""Which strokes are worth a look? Generators: each makes m continuous strokes for each of n positions, of n seeds.
 
-* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to (chance x nearness)^4 x worth.
-  The strokes at a pot are consecutive points of one scrambled Sobol sequence over the logarithm of the speed,
-  the height of the tip and its side; half of them have no side.
-* ``at_balls``: to the places where a ball on is met first (``tasks.windows``), evenly. Every other
-  stroke is hard, since a ball then goes in by chance more often.
-* ``safeties``: at the same places, of all speeds; every other one thin, near an edge of what is seen.
-* ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
-  models of the engine."""
+``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to (chance x nearness)^4 x worth. Its
+strokes are consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its
+side. ``at_balls``, ``safeties``: evenly to the places where a ball on is met first (``tasks.windows``). ``over_cushions``: about
+the escapes of ``tasks.escapes``."""
 
 from collections.abc import Callable
 from math import atan2, exp, hypot, log, pi
@@ -38,17 +32,12 @@ from .positions import Positions
 from .sobol import sobol
 from .stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 
-SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5
-"""Cue speeds of the proposals at pots [m/s]; the smallest of strokes without a pot."""
+SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5  # cue speeds at pots [m/s]; the smallest of strokes without a pot
 HIGHEST, WIDEST, RIM = 0.45, 0.35, 0.49
 """Largest tip offsets over R, up or down and to a side; radius of the disc that a corner is drawn in to."""
-PLAIN = 0.5
-"""Share of the strokes without side."""
-POWER = 4.0  # power of the chance in a pot's share of the strokes
-GENTLEST, HARDEST, SAFE_TIP = 0.45, 6.0, 0.4
-"""Of safeties: cue speeds [m/s], and the largest tip offset over R to each side."""
-EDGE = 0.1
-"""How far from an edge of what is seen thin safeties are aimed, at most [rad]."""
+PLAIN, POWER = 0.5, 4.0  # share of the strokes without side; power of the chance in a pot's share of them
+GENTLEST, HARDEST, SAFE_TIP = 0.45, 6.0, 0.4  # of safeties: cue speeds [m/s], largest tip offset over R
+EDGE = 0.1  # how far from an edge of what is seen thin safeties are aimed, at most [rad]
 ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 """Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 
@@ -65,10 +54,9 @@ class Proposals(NamedTuple):
 
     Attributes
     ----------
-    strokes : numpy.ndarray
-        float64 (n, m, 5). Strokes in SI, see ``Planner``.
-    chances : numpy.ndarray
-        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot; 0 for none.
+    strokes, chances : numpy.ndarray
+        float64 (n, m, 5), strokes in SI, see ``Planner``; float64 (n, m), chance of each one's pot by its width, 1 without a
+        pot, 0 for no stroke.
 
     Examples
     --------
@@ -115,8 +103,7 @@ def _aim(stroke, positions, on_table, pot, law, work):
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
 def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
-    """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them. ``spread`` is
-    that of a stroke at ``POT_SPEED``."""
+    """Fill strokes (n, m, 5) at the pots ``which`` (n, m), without rows spread, and chances; ``spread``: at ``POT_SPEED``."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
     (positions, on_table, game), work = balls, new_work()
     phys, ratios, fidelity, n_steps, most, rails = law
@@ -272,8 +259,7 @@ def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals
     Parameters
     ----------
     search, at, m, seeds
-        The search, whose ``spread`` and ``dynamics`` count; n ``Positions``; the number of strokes for each; int64 (n,)
-        in [0, 2**32), of the Sobol scrambles.
+        The search, whose ``spread`` and ``dynamics`` count; n ``Positions``; the number of strokes for each; int64 (n,).
 
     Returns
     -------

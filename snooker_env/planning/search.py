@@ -1,20 +1,19 @@
 """Which stroke is best? One search over continuous strokes, one shot deep, for visits and for frames.
 
-1. A judge (``VisitJudge``, ``FrameJudge``) proposes strokes for each position, plays each once without error, and says what
-   it brings and what the position that it leaves is worth. A visit is a frame without an opponent: only that worth differs.
-2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh 2013): scrambled
-   Sobol points, common to all strokes of a position. A stroke's figure is the mean over the samples, with the first look as
-   ``PRIOR`` of them. Without execution errors nothing is sampled."""
+A judge proposes strokes for each position, plays each once without error, and says what it brings and what the position that
+it leaves is worth. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh
+2013): scrambled Sobol points, common to all strokes of a position. A stroke's figure is the mean over the samples, with the
+first look as ``PRIOR`` of them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from .._lib.check import integer, refuse_what
 from .._lib.types import Bools, Floats, Integers, Ints
-from ..tasks.noise import Spread
+from ..tasks.noise import Noise, Spread
 from ..tasks.options import Rules
 from .aims import Dynamics
 from .positions import Positions, PositionsLike, check_has_stroke, seeds_of
@@ -33,16 +32,13 @@ class Ranked(NamedTuple):
 
     Attributes
     ----------
-    strokes : Strokes
-        The m strokes.
-    scores : numpy.ndarray or None
-        float64 (m,), by which they are ranked: in visits expected points of the stroke and of what follows, in frames the
-        chance to win, or the points if there is no law for it. None of a player that has no scores.
-    points : numpy.ndarray
-        float64 (m,), of a search, else empty: expected points, in frames less the opponent's.
-    samples, kinds : numpy.ndarray
-        int64 (m,), of a search, else empty: noise samples that each met, 0 if it had only the look without error; the
-        generator that proposed each, in frames 0 a pot, 1 a safety, 2 a contact, 3 an escape.
+    strokes, scores : Strokes, numpy.ndarray or None
+        The m strokes; float64 (m,), by which they are ranked: in visits expected points of the stroke and of what follows,
+        in frames the chance to win, or the points if there is no law for it. None of a player that has no scores.
+    points, samples, kinds : numpy.ndarray
+        Of a search, else empty: float64 (m,), expected points, in frames less the opponent's; int64 (m,), noise samples that
+        each met, 0 if it had only the look without error; int64 (m,), the generator that proposed each, in frames 0 a pot,
+        1 a safety, 2 a contact, 3 an escape.
 
     Examples
     --------
@@ -68,8 +64,7 @@ class Plan(NamedTuple):
 
 
 class Proposed(NamedTuple):
-    """Strokes (n, m, 5) for n positions, the chances of their pots (n, m), 1 without a pot and 0 for no stroke, the kind of
-    each (n, m), and whether a position has some without a pot (n,)."""
+    """``Proposals`` for n positions, the kind of each stroke (n, m), and whether a position has some without a pot (n,)."""
 
     strokes: Floats
     chances: Floats
@@ -77,41 +72,44 @@ class Proposed(NamedTuple):
     safe: Bools
 
 
-class Judge(Protocol):
+class Judge:
     """What a search asks of a game: how to spend the budget, what to try, and what it is worth."""
 
-    rules: Rules
-    dynamics: Dynamics
-    spread: Spread
     least: int  # smallest budget of a decision
+
+    def __init__(self, rules: Rules):
+        self.rules: Rules = rules
+        self.noise: Noise = rules.noise
+        self.spread: Spread = rules.noise.spread(rules.physics)
+        self.dynamics: Dynamics = Dynamics.of(rules)
 
     def plans(self, search: "Search", at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """How to spend the budget, and in which of the positions."""
-        ...
+        raise NotImplementedError
 
     def propose(self, search: "Search", at: Positions, seeds: Ints, plan: Plan) -> Proposed:
         """The strokes to try in n positions."""
-        ...
+        raise NotImplementedError
 
     def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
         """What proposed strokes are worth without error, (k, v), and which of them to go on with (k,)."""
-        ...
-
-    def groups(self, kinds: Ints, looks: Floats) -> Ints:
-        """Of which groups of strokes the best are sampled, (n, m), by their kinds and looks (n, m, v)."""
-        ...
+        raise NotImplementedError
 
     def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
         """What they are worth under errors (k, 5) in standard deviations: (k, v)."""
-        ...
+        raise NotImplementedError
+
+    def groups(self, kinds: Ints, looks: Floats) -> Ints:
+        """Of which groups of strokes the best are sampled, (n, m), by their kinds and looks (n, m, v)."""
+        return kinds
 
     def score(self, values: Floats) -> Floats:
         """What such values of n positions, (n, m, v), are compared by: (n, m)."""
-        ...
+        return values[..., 0]
 
     def figures(self, values: Floats) -> tuple[Floats, Floats]:
         """The scores and the points (n, m) of a ranking."""
-        ...
+        return values[..., 0], values[..., 0]
 
 
 class Search:
@@ -119,10 +117,9 @@ class Search:
 
     Parameters
     ----------
-    judge : VisitJudge or FrameJudge
-        What is played where, and what the position that a stroke leaves is worth.
-    budget : int, optional
-        Simulated shots of a decision: at most in visits, at least 8; on average in frames, at least 30. Default 120.
+    judge, budget : VisitJudge or FrameJudge, int
+        What is played where, and what a stroke is worth; simulated shots of a decision: at most in visits, at least 8; on
+        average in frames, at least 30.
     propose : callable or sequence of callable, optional
         Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``; in frames one. Default: ``at_pots``.
 
@@ -136,7 +133,7 @@ class Search:
     """
 
     def __init__(self, judge: Judge, budget: int = BUDGET, propose: Propose | Sequence[Propose] = at_pots):
-        if not hasattr(judge, "plans"):
+        if not isinstance(judge, Judge):
             raise refuse_what("judge", f"a {type(judge).__name__}", "must be a VisitJudge or a FrameJudge")
         self.judge: Judge = judge
         self.budget: int = integer("budget", budget, judge.least, MOST)
@@ -147,9 +144,8 @@ class Search:
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Try strokes in n positions and return them ``Ranked``: the first one of each is to be played.
 
-        ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball in hand is
-        played from where it lies, decisions after a foul are behind the players. ValueError if a position is invalid or has
-        no stroke to play."""
+        ``seeds``, int (n,): equal seeds give equal decisions. A cue ball in hand is played from where it lies, decisions
+        after a foul have been made. ValueError if a position is invalid or has no stroke to play."""
         rules, at = self.judge.rules, Positions.of(positions)
         at, keys = at.known_to(rules), seeds_of(seeds, len(at))
         check_has_stroke(at.as_visits(), np.arange(len(at)), rules.table, rules.physics.R)
@@ -175,11 +171,7 @@ class Search:
             order[safe] = in_turn(order[safe], judge.groups(kinds[safe], looks[safe]))
             there = np.isfinite(looks[every, order, 0])
             order = np.take_along_axis(order, np.argsort(~there, axis=1, kind="stable"), 1)
-
-        def sample_errors(rows: Ints, picks: Ints, errors: Floats) -> Floats:
-            return judge.sample(at, proposed, rows, picks, judge.rules.noise.errors_from(errors))
-
-        order, means, samples = halve(looks, order, plan.rounds, seeds, sample_errors, judge.score)
+        order, means, samples = self._halve(at, proposed, looks, order, plan, seeds)
         scores, points = judge.figures(means)
         counts = np.bincount(rows, minlength=len(at))
         tried = np.arange(chances.shape[1]) < counts[:, None]  # what was not tried is last
@@ -192,39 +184,30 @@ class Search:
             ranked.append(Ranked(told[start:end], *figures))
         return ranked
 
-
-def halve(
-    looks: Floats,
-    order: Ints,
-    rounds: Sequence[tuple[int, int]],
-    seeds: Ints,
-    met: Callable[[Ints, Ints, Floats], Floats],
-    score: Callable[[Floats], Floats],
-) -> tuple[Ints, Floats, Ints]:
-    """Sequential halving: of the strokes of n positions the best meet noise samples, the better ones more of them.
-    ``looks`` (n, m, v): the values of each stroke without error, -inf where there is none; they count as ``PRIOR``
-    samples. ``order`` (n, m): the strokes, best first. ``rounds``: how many go on, and their further samples.
-    ``sample_errors(rows, picks, errors)``: values (k, v) of the strokes ``picks`` of the positions ``rows`` under
-    the errors that normal numbers (k, 6) stand for.
-    ``score``: what values (..., v) are compared by. Returns the order then, means (n, m, v) and samples (n, m)."""
-    n, m = looks.shape[:2]
-    every, sums = np.arange(n)[:, None], PRIOR * looks
-    values, tries = looks.copy(), np.zeros((n, m), np.int64)
-    samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in seeds.tolist()])
-    done = 0
-    for many, each in rounds:
-        best = order[:, :many]
-        j, c = np.nonzero(np.isfinite(looks[every, best, 0]))
-        c = best[j, c]
-        errors = samples[:, done : done + each][j].reshape(-1, DIMENSIONS)
-        got = met(np.repeat(j, each), np.repeat(c, each), errors).reshape(len(j), each, -1)
-        sums[j, c] += np.ascontiguousarray(got.transpose(0, 2, 1)).sum(axis=2)  # rounded in a fixed order
-        tries[j, c] += each
-        done += each
-        values[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
-        again = np.argsort(-score(values[every, best]), axis=1, kind="stable")
-        order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
-    return order, values, tries
+    def _halve(
+        self, at: Positions, proposed: Proposed, looks: Floats, order: Ints, plan: Plan, seeds: Ints
+    ) -> tuple[Ints, Floats, Ints]:
+        """Sequential halving of strokes with these ``looks`` (n, m, v), -inf where there is none, best first in ``order``: the
+        order then, means and samples."""
+        judge, (n, m) = self.judge, looks.shape[:2]
+        every, sums = np.arange(n)[:, None], PRIOR * looks
+        values, tries = looks.copy(), np.zeros((n, m), np.int64)
+        samples = np.stack([normal_points(sum(each for _, each in plan.rounds), k) for k in seeds.tolist()])
+        done = 0
+        for many, each in plan.rounds:
+            best = order[:, :many]
+            j, c = np.nonzero(np.isfinite(looks[every, best, 0]))
+            c = best[j, c]
+            errors = judge.noise.errors_from(samples[:, done : done + each][j].reshape(-1, DIMENSIONS))
+            got = judge.sample(at, proposed, np.repeat(j, each), np.repeat(c, each), errors)
+            got = got.reshape(len(j), each, -1)
+            sums[j, c] += np.ascontiguousarray(got.transpose(0, 2, 1)).sum(axis=2)  # rounded in a fixed order
+            tries[j, c] += each
+            done += each
+            values[j, c] = sums[j, c] / (PRIOR + tries[j, c])[:, None]
+            again = np.argsort(-judge.score(values[every, best]), axis=1, kind="stable")
+            order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+        return order, values, tries
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:

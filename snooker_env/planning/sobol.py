@@ -19,7 +19,7 @@ _POLYNOMIALS = ((1, 0, (1,)), (2, 1, (1, 3)), (3, 1, (1, 3, 1)), (3, 2, (1, 1, 1
 
 
 def _directions():
-    """Direction numbers, uint32 (DIMENSIONS, _BITS)."""
+    """Direction numbers (DIMENSIONS, _BITS)."""
     out = np.empty((DIMENSIONS, _BITS), np.int64)
     out[0] = [1 << (31 - k) for k in range(_BITS)]
     for d, (degree, inner, first) in enumerate(_POLYNOMIALS, start=1):
@@ -86,15 +86,14 @@ def _points(seed, out):
 
 
 def sobol_points(n: int, dimensions: int, seed: int) -> Floats:
-    """The first n points, each in (0, 1), of a scrambled sequence of up to 6 dimensions: float64 (n, dimensions)."""
+    """The first n points, each in (0, 1), of a scrambled sequence of up to 6 dimensions: (n, dimensions)."""
     out = np.empty((n, dimensions))
     _points(seed & _ALL, out)
     return out
 
 
 _NORMAL = np.vectorize(NormalDist().inv_cdf, otypes=[np.float64])
-_AIM_FIRST = [1, 2, 3, 0, 4, 5]
-"""Which coordinate becomes which error: the first, the most even one, that of the aim, which matters most."""
+_AIM_FIRST = [1, 2, 3, 0, 4, 5]  # the first coordinate, the most even one, is the aim's: it matters most
 
 
 def normal_points(n: int, seed: int) -> Floats:

@@ -1,16 +1,15 @@
-"""What is a stroke, and which action means it? ``Strokes``, the one encoder of strokes as actions, and ``decode``, the one
-decoder. Beside the stroke itself an action may say where the cue ball goes, what is nominated, decided and declared."""
+"""What is a stroke, and which action means it? ``Strokes`` encodes strokes as actions, ``decode`` reads them."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._lib.check import refuse, refuse_what
 from .._lib.jit import entry
-from .._lib.types import CueKind, Floats, Ints, Vectors
+from .._lib.types import Bools, Floats, Ints, Vectors
 from ..game.balls import YELLOW
 from ..game.fouls import AUTO
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
@@ -18,17 +17,8 @@ from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import Physics
+from ..tasks import box_actions as box
 from ..tasks import stroke
-from ..tasks.box_actions import (
-    FASTEST,
-    MAX_SPEED,
-    MIN_SPEED,
-    MOST_SIDE,
-    MOST_TOP,
-    SLOWEST,
-    TARGET_SPAN,
-    Actions,
-)
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.discrete_actions import POTS, SIZE, Choices, masks
 from ..tasks.frames import sayings
@@ -49,6 +39,15 @@ EVERY = "an environment with **snooker_env.players.VISITS, or in frames **snooke
 SAME = 1e-6  # how little two strokes differ that are one
 
 
+def _column(column: int, about: str) -> Any:
+    """A property of ``Strokes``: a column of its values."""
+
+    def read(self: "Strokes") -> Floats:
+        return self.values[:, column]
+
+    return property(read, doc=about)
+
+
 @dataclass(frozen=True)
 class Strokes:
     """What players do in n positions: a stroke each, and what is said with it.
@@ -56,19 +55,13 @@ class Strokes:
     Parameters
     ----------
     values : numpy.ndarray
-        float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
-        leaves the tip [rad, anticlockwise from +x; squirt is compensated, what the cloth does to the ball of
-        a raised cue is not], elevation of the cue [rad].
+        float64 (n, 5), in SI, see ``Planner``.
     place : numpy.ndarray, optional
-        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it
-        lies.
-    nominate : numpy.ndarray, optional
-        int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
-        (default): the colour first struck.
-    decision, declare : numpy.ndarray, optional
-        int64 (n,). After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
-        ``game.frame_columns``; SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of
-        ``tasks.declarations``.
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it lies.
+    nominate, decision, declare : numpy.ndarray, optional
+        int64 (n,). Id of the colour nominated after a red or as a free ball, 0: the free ball is declined, -1 (default): the
+        colour first struck. After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
+        ``game.frame_columns``. SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of ``tasks.declarations``.
 
     Examples
     --------
@@ -133,90 +126,66 @@ class Strokes:
         """The arrays, in the order of the fields."""
         return self.values, self.place, self.nominate, self.decision, self.declare
 
-    @property
-    def speed(self) -> Floats:
-        """Cue speeds [m/s], float64 (n,)."""
-        return self.values[:, SPEED]
-
-    @property
-    def side(self) -> Floats:
-        """Tip offsets to the right over R, float64 (n,)."""
-        return self.values[:, SIDE]
-
-    @property
-    def top(self) -> Floats:
-        """Tip offsets upwards over R, float64 (n,)."""
-        return self.values[:, TOP]
-
-    @property
-    def aim(self) -> Floats:
-        """Directions in which the cue ball leaves [rad], float64 (n,)."""
-        return self.values[:, AIM]
-
-    @property
-    def elevation(self) -> Floats:
-        """Elevations of the cue [rad], float64 (n,)."""
-        return self.values[:, ELEVATION]
+    speed: ClassVar[Floats] = _column(SPEED, "Cue speeds [m/s], float64 (n,).")
+    side: ClassVar[Floats] = _column(SIDE, "Tip offsets to the right over R, float64 (n,).")
+    top: ClassVar[Floats] = _column(TOP, "Tip offsets upwards over R, float64 (n,).")
+    aim: ClassVar[Floats] = _column(AIM, "Directions in which the cue ball leaves [rad], float64 (n,).")
+    elevation: ClassVar[Floats] = _column(ELEVATION, "Elevations of the cue [rad], float64 (n,).")
 
     def actions(self, options: Options, positions: PositionsLike) -> Floats:
         """Convert to actions of an environment, with all that is said: float64 (n, k) in [-1, 1].
 
-        ``options``: of the environment, with ``action="box"``. ``positions``: n of them, see ``Positions.of``, on which the
-        meaning of a place, a nomination, a pot and an aim from a target line depends. ValueError if the environment reads
-        other actions, or a stroke, a decision or a declaration that they do not hold: with ``aim="pot"`` they hold
-        strokes along its lines alone. A place and a nomination that they do not hold are left out."""
-        box, at = options.rules.actions, Positions.of(positions)
+        ``options``: of the environment, with ``action="box"``. ``positions``: n of them, on which the meaning of a place, a
+        nomination, a pot and an aim from a target line depends. ValueError if the environment reads other actions, or a
+        stroke, a decision or a declaration that they do not hold: with ``aim="pot"`` they hold strokes along its lines alone.
+        A place and a nomination that they do not hold are left out."""
+        reads, at = options.rules.actions, Positions.of(positions)
         if len(at) != len(self):
-            raise refuse_what(
-                "positions", f"{len(at)} positions", f"must be {len(self)}, one for each stroke"
-            )
-        if not isinstance(box, Actions):
+            allowed = f"must be {len(self)}, one for each stroke"
+            raise refuse_what("positions", f"{len(at)} positions", allowed)
+        if not isinstance(reads, box.Actions):
             raise refuse("options.action", options.action, f'must be "box": {EVERY}')
-        turns = self.aim / np.pi
-        parts = [
-            2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0,
-            2.0 * self.side,
-            2.0 * self.top,
-            turns - 2.0 * np.round(0.5 * turns),
-        ]
-        if box.aim == "pot":
-            logs = np.log(np.maximum(self.speed, MIN_SPEED) / SLOWEST) / np.log(FASTEST / SLOWEST)
-            parts[:3] = 2.0 * logs - 1.0, self.side / MOST_SIDE, self.top / MOST_TOP
+        turns, least = self.aim / np.pi, box.MIN_SPEED
+        speeds = 2.0 * (self.speed - least) / (box.MAX_SPEED - least) - 1.0
+        parts = [speeds, 2.0 * self.side, 2.0 * self.top, turns - 2.0 * np.round(0.5 * turns)]
+        if reads.aim == "pot":
+            logs = np.log(np.maximum(self.speed, least) / box.SLOWEST) / np.log(box.FASTEST / box.SLOWEST)
+            parts[:3] = 2.0 * logs - 1.0, self.side / box.MOST_SIDE, self.top / box.MOST_TOP
         for name, holds, least in (
-            ("elevation", box.elevation, 0.0),
-            ("decision", "decision" in box.says, PLAY),
-            ("declare", box.declares, SAYS_NOTHING),
+            ("elevation", reads.elevation, 0.0),
+            ("decision", "decision" in reads.says, PLAY),
+            ("declare", reads.declares, SAYS_NOTHING),
         ):
             if not holds and ((part := getattr(self, name)) > least).any():
                 allowed = "must be left out: the actions do not hold it"
                 raise refuse(name, part.max().item(), allowed if name == "declare" else f"{allowed}; {EVERY}")
-        if box.elevation:
-            if (steep := self.elevation.max(initial=0.0)) > box.steepest + 1e-9:
-                allowed = f"must be at most {box.steepest:.3g} rad, as the option elevation says; {EVERY}"
+        if reads.elevation:
+            if (steep := self.elevation.max(initial=0.0)) > reads.steepest + 1e-9:
+                allowed = f"must be at most {reads.steepest:.3g} rad, as the option elevation says; {EVERY}"
                 raise refuse("elevation", float(steep), allowed)
-            parts.append(2.0 * self.elevation / box.steepest - 1.0)
-        if box.placement:
+            parts.append(2.0 * self.elevation / reads.steepest - 1.0)
+        if reads.placement:
             parts += self._place(at)
-        if "nominate" in box.says:
+        if "nominate" in reads.says:
             parts.append(self._nominate(at))
-        if "decision" in box.says:
+        if "decision" in reads.says:
             again = np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)
             parts.append(np.where(self.decision == PLAY, 0.0, again))
-        if box.declares:
+        if reads.declares:
             says = np.where(self.declare == CLAIMS, 1.0, -1.0)
             parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, says))
         actions = np.stack(parts, axis=1)
-        if box.aim == "target":
+        if reads.aim == "target":
             actions[:, 3] = self._off_target(options.rules, at, actions)
         actions = np.clip(actions, -1.0, 1.0)  # removes rounding errors
-        if box.aim == "pot":
+        if reads.aim == "pot":
             actions[:, 3] = self._picks(options.rules, at, actions)
         return actions
 
     def _off_target(self, rules: Rules, at: Positions, actions: Floats) -> Floats:
         """The component of an aim from the target line, on which an action with 0 there is played."""
         lines = _read_with(0.0, rules, at, actions.clip(-1.0, 1.0))[:, AIM]
-        off = _wrap(self.aim - lines) / TARGET_SPAN
+        off = _wrap(self.aim - lines) / box.TARGET_SPAN
         if (far := np.abs(off) > 1.0 + 1e-9).any():
             k = int(np.argmax(far))
             allowed = f"must be within 3 degrees of the target line, {lines[k]:.6g} rad; {EVERY}"
@@ -287,9 +256,8 @@ def _read_with(aim: float, rules: Rules, at: Positions, actions: Floats) -> Floa
 def decode(
     rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
 ) -> tuple[Floats, Positions]:
-    """Strokes (n, 5) that checked actions mean on ``at[which]``, and n positions with the cue ball so placed.
-
-    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball."""
+    """Strokes (n, 5) that checked actions mean on ``at[which]``, with what is ``nominated`` (n,) in frames, and n positions
+    with the cue ball so placed."""
     visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at.known_to(rules)[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:
@@ -311,16 +279,16 @@ def intentions_of(buffers: ShotBuffers, cues: Floats) -> Floats:
     return strokes
 
 
-def action_masks(positions: PositionsLike, *, cue: CueKind = "free") -> NDArray[np.bool_]:
+def action_masks(positions: PositionsLike, *, rails: Floats = NO_RAILS) -> Bools:
     """Return which choices of ``action="discrete"`` are available in each position.
 
     Parameters
     ----------
     positions : PositionsLike
-        The m positions: anything that ``Positions.of`` accepts.
-    cue : str, optional
-        "free" (default) or "real", as of ``Options``: on the table "match", choices whose cue had to be steeper than
-        45 degrees are not available, as long as others are.
+        The m positions, see ``Positions.of``.
+    rails : numpy.ndarray, optional
+        Those that a real cue passes over, ``Planner.rules.rails``: choices whose cue had to be steeper than 45 degrees are
+        not available, as long as others are. Default: a free cue.
 
     Returns
     -------
@@ -333,13 +301,7 @@ def action_masks(positions: PositionsLike, *, cue: CueKind = "free") -> NDArray[
     >>> int(action_masks(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).sum())
     270
     """
-    rails = NO_RAILS if cue == "free" else Options(cue=cue).rules.rails  # those of the table "match"
-    return available(Positions.of(positions), rails)
-
-
-def available(positions: Positions, rails: Floats) -> NDArray[np.bool_]:
-    """``action_masks`` with the rails that the cue passes over, ``Rules.rails``."""
-    at, cue = positions.as_visits(), pack_cue(Physics(), rails)
+    at, cue = Positions.of(positions).as_visits(), pack_cue(Physics(), rails)
     out = np.empty((len(at), SIZE), np.bool_)
     masks(np.arange(len(at)), at.positions, at.on_table, at.game, Choices().pack(), cue, out)
     return out

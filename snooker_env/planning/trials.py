@@ -1,5 +1,4 @@
-"""What do strokes lead to? Tables of one stroke each, filled with positions: ``TrialVisits`` by the rules of visits,
-``FrameTrials`` by those of frames; ``turn_to_striker`` shows what is left as the next striker sees it."""
+"""What do strokes lead to? Tables of one stroke each, filled with positions, by the rules of visits or of frames."""
 
 from copy import copy
 from dataclasses import replace
@@ -70,9 +69,8 @@ class Struck(Tables):
         if self.errors is None:
             super().address(which, actions, buffers, side)
             return
-        (_, cues, noise, _), silent = self.pack(), NO_NOISE.pack(1.0)
-        if self.kick:
-            silent = Noise(kick=self.kick).pack(1.0)
+        _, cues, noise, _ = self.pack()
+        silent = (Noise(kick=self.kick) if self.kick else NO_NOISE).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, cues, noise, silent)
 
 
@@ -106,11 +104,8 @@ class FrameTrials(Struck, Frames):
         self._crew, self._out = threads, self.output()
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Positions:
-        """Play n strokes, each on a copy of ``at[rows]``, and return what they leave: n positions of frames in which
-        whoever played is still player 0, so that ``STRIKER`` says who comes next.
-
-        A cue ball in hand is played from where it lies. Decisions after a foul must have been made: rows in that
-        phase are played as the table lies."""
+        """Play n strokes on copies of ``at[rows]``, in which cue balls have been placed and decisions made. Returns what they
+        leave: whoever played is still player 0, so that ``STRIKER`` says who comes next."""
         trial, after = copy(self), at[rows]  # a copy: several threads may play at once
         trial.lay(after, np.zeros((len(after), 2), np.uint64), errors)
 

@@ -1,20 +1,16 @@
 """What is a position of a frame worth to who comes to it, and what follows from that?
 
-A *worth* is a callable: n ``Positions`` of frames, each with a stroke to play and seen by its striker, to the
-points that the striker is expected to score from now on, less those of the other: float (n,). One worth serves
-both players: **after each stroke either I go on, and the next position's worth is mine, or the other comes, and
-it is theirs**. All decisions of a frame compare it: what to do after a foul, where to place the cue ball, who
-begins at a re-spotted black.
-"""
+A *worth* maps n ``Positions`` of frames, seen by their strikers, to the points that each is expected to score from now on, less
+the other's. One worth serves both: **after each stroke either I go on, and the next position's worth is mine, or the other
+comes, and it is theirs**. All decisions compare it: after a foul, in hand, who begins at a re-spotted black."""
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._lib.jit import entry
-from .._lib.types import Bools, Floats, Ints
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, CUE, N_BALLS, VALUES, available
 from ..game.sides import swap_sides
@@ -27,14 +23,10 @@ SPREAD, NARROWEST, WIDEST = 1.2e-3, 3.3e-4, 5e-3
 """An error of direction in the middle of those that are learned from [rad]; those beyond the others count as these."""
 LAST, FOUL, SURE = float(VALUES[BLACK]), 4.0, 0.98
 """Points that the last black, or a foul on it, brings; the least that a foul does; how sure it is at most who gets them."""
-Worth: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
-PLACES = np.array(
-    [
-        (x * D_RADIUS, BAULK_Y - y * D_RADIUS)
-        for y, many in ((0.0, 7), (0.6, 4))
-        for x in np.linspace(-0.95, 0.95, many) * np.sqrt(1.0 - y * y)
-    ]
-)
+Worth: TypeAlias = Callable[[Positions], Floats | Singles]
+_ROWS = ((0.0, 7), (0.6, 4))
+_IN_D = [(x * np.sqrt(1.0 - y * y), -y) for y, many in _ROWS for x in np.linspace(-0.95, 0.95, many)]
+PLACES = np.array(_IN_D) * D_RADIUS + (0.0, BAULK_Y)
 """Where in the D a cue ball in hand is tried: (11, 2) [m]."""
 
 
@@ -86,7 +78,7 @@ def apply_decision(at: Positions, what: int) -> Positions:
 def decide(worth: Worth, at: Positions, rules: int = 0) -> tuple[Ints, Floats]:
     """The best decision after a foul for n strikers who have that choice, and its worth to them: (n,), (n,).
 
-    A striker who leads by more than is left plays on: further fouls of the other would bring points without use."""
+    Who leads by more than is left plays on: further fouls of the other would bring points without use."""
     allowed, values = np.zeros((len(at), 4), np.bool_), np.full((len(at), 4), -np.inf)
     _list_choices(at.game, rules, allowed)
     if at.saved is None:

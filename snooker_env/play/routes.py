@@ -20,7 +20,7 @@ from ..game.frame import CHOICES
 from ..geometry import POCKETS
 from ..physics.engine import EventKind
 from ..planning.position import Position
-from ..players.requests import STROKE, read_colour, read_place, read_stroke
+from ..players.cue_stroke import STROKE, read_colour, read_place, read_stroke
 from ..render.scene import trace_paths
 from ..replays import Replay
 from ..replays.encode import pack

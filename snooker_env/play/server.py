@@ -23,7 +23,7 @@ from urllib.parse import parse_qsl, urlsplit
 from .._lib.check import refuse
 from .._lib.files import strict_json
 from .._lib.install import missing
-from ..players.requests import read_object
+from ..players.cue_stroke import read_object
 from ..replays.web import table_js
 from ..simulation import SimulationError
 from .routes import GET, POST, answer, parts_of

@@ -1,16 +1,10 @@
-"""Players: functions of positions and a seed. The only place where a name becomes a player.
-
->>> import snooker_env as sn
->>> player = sn.player("search").at({"noise": "club"})
->>> player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7]).values.shape
-(1, 5)
-"""
+"""Players: functions of positions and a seed."""
 
 import sys as _sys
 from types import ModuleType as _ModuleType
 
 from .choices import ChoicePlayer
-from .opponent_pool import OpponentPool
+from .opponents import OpponentPool
 from .player import FRAMES, VISITS, BoundPlayer, Player, Ranked, Strokes, ask_player, decision_seeds
 from .resolver import player, players
 from .seen import Seen, SeenPlayer

@@ -9,7 +9,7 @@ from ..game.frame_columns import VISIT_COLUMNS
 from ..planning import Positions, pots
 from ..planning.ghost_ball import geometric_strokes
 from ..planning.positions import PositionsLike, seeds_of
-from ..planning.strokes import available, intentions_of
+from ..planning.strokes import action_masks, intentions_of
 from ..planning.trials import packed_under
 from ..tasks.declarations import SAYS_NOTHING
 from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
@@ -75,14 +75,12 @@ class ChoicePlayer(BoundPlayer):
     def _read_choices(self, visits: Positions, choices: Ints) -> Floats:
         """The strokes (n, 5) that a choice in each of n visits means; cue balls have been placed."""
         rules, n = self._rules, len(visits)
-        own, buffers, packed = visits.known_to(rules).conditions, ShotBuffers(n, 0), self._packed
-        if own is not None:
-            packed = packed_under(own, rules)
+        own, buffers = visits.known_to(rules).conditions, ShotBuffers(n, 0)
+        packed = self._packed if own is None else packed_under(own, rules)
         streams, nominated = np.zeros((n, 2), np.uint64), np.empty(0, np.int64)
         tables = visits.positions, visits.on_table, visits.game, streams, nominated
-        address(
-            np.arange(n), choices[:, None].astype(np.float64), tables, buffers.struck, packed, rules.fidelity
-        )
+        actions = choices[:, None].astype(np.float64)
+        address(np.arange(n), actions, tables, buffers.struck, packed, rules.fidelity)
         return intentions_of(buffers, packed[1])
 
     def _score(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints, Floats]:
@@ -110,7 +108,7 @@ class Random(ChoicePlayer):
     name, training_shots = "random", 0
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        masks = available(at, self.options.rules.rails)
+        masks = action_masks(at, rails=self.options.rules.rails)
         order = np.empty(masks.shape)
         for row, seed in zip(order, seeds.tolist(), strict=True):
             row[:] = np.random.default_rng(seed).random(len(row))
@@ -152,8 +150,7 @@ class GhostBall(ChoicePlayer):
     def turns(
         self, positions: Floats, on_table: Bools, game: Ints, conditions: Floats | None, seeds: Ints
     ) -> tuple[Asked, Positions]:
-        """What it plays on n tables, and from where: visits after its decisions, with placed cue balls, which take over
-        the arrays of the tables."""
+        """What it plays on n tables, and from where: visits, which take over the arrays of the tables."""
         n, code = len(seeds), self.options.rules.rule_set.code
         values, places, visits = np.empty((n, 5)), np.empty((n, 2)), np.empty((n, VISIT_COLUMNS), np.int64)
         (nominated, decisions), solves = np.empty((2, n), np.int64), np.empty(n, np.bool_)

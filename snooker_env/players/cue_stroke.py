@@ -1,19 +1,25 @@
-"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
+"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; and as the fields of a request ask for it, in the
+language of ``POST api/stroke`` (docs/play/protocol.md), which programs speak too."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import partial
 from math import hypot
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from .._lib.check import array, choice, number, refuse_what
+from .._lib.check import array, choice, number, refuse, refuse_what
+from .._lib.files import strict_json
 from .._lib.types import Floats, Place
+from ..game.balls import COLOUR_NAMES, NAMES, colour
 from ..game.in_hand import within_d
-from ..planning import Positions
-from ..planning.stroke_columns import FARTHEST, LEAST, MOST, NAMES
-from ..planning.strokes import Strokes
+from ..geometry import POCKET_AIMS, POCKETS
+from ..planning import Planner, Positions, Strokes
+from ..planning.stroke_columns import FARTHEST, LEAST, MOST
+from ..planning.stroke_columns import NAMES as COLUMNS
+
+STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,16 +28,11 @@ class CueStroke:
 
     Parameters
     ----------
-    speed : float
-        Cue speed [m/s], in [0.2, 7].
-    aim : float
-        Direction in which the cue ball leaves the tip [rad], anticlockwise from +x, as ``aim="absolute"`` of
-        an action. Squirt is compensated: with side, the cue points in a slightly different direction. What
-        the cloth does to the ball of a raised cue is not.
-    side, top : float
-        Tip offsets to the right and upwards over R, as the player sees it, within a disc of radius 0.5.
-    elevation : float
-        Elevation of the butt [rad], from 0 to 30 degrees.
+    speed, aim : float
+        Cue speed [m/s], in [0.2, 7]; direction in which the cue ball leaves the tip [rad], anticlockwise from +x. Squirt is
+        compensated, what the cloth does to the ball of a raised cue is not.
+    side, top, elevation : float
+        Tip offsets to the right and upwards over R, within a disc of radius 0.5; elevation of the butt [rad], to 30 degrees.
     place : (float, float), optional
         Where in the D a cue ball in hand is placed first [m]. Default None: it is played from where it lies.
 
@@ -51,7 +52,7 @@ class CueStroke:
 
     def __post_init__(self) -> None:
         put = partial(object.__setattr__, self)
-        for name, least, most in zip(NAMES, LEAST, MOST, strict=True):
+        for name, least, most in zip(COLUMNS, LEAST, MOST, strict=True):
             put(name, number(name, getattr(self, name), least, most))
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
             allowed = f"must lie within the disc of radius {FARTHEST}"
@@ -64,9 +65,7 @@ class CueStroke:
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
-        """Convert a dict with fields of ``CueStroke``, or an object with such attributes, to a ``CueStroke``.
-
-        ValueError if a field is unknown, missing or out of range."""
+        """Convert a dict of fields, or an object with such attributes; ValueError for one unknown, missing or out of range."""
         if isinstance(stroke, cls):
             return stroke
         names = [f.name for f in fields(cls)]
@@ -92,9 +91,7 @@ class CueStroke:
 
     def strokes(self) -> Strokes:
         """Return the stroke as ``Strokes`` of one row; their ``actions(env.options, position)`` is what an environment reads."""
-        return Strokes(
-            self.numbers()[None], np.array([(np.nan, np.nan) if self.place is None else self.place])
-        )
+        return Strokes(self.numbers()[None], np.array([self.place or (np.nan, np.nan)]))
 
 
 StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any  # what ``CueStroke.of`` takes
@@ -110,3 +107,58 @@ def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
         tip = {"side": side / shrink, "top": top / shrink}
         out.append(CueStroke(speed=speed, aim=aim, **tip, elevation=elevation, place=put))
     return out
+
+
+def read_object(raw: bytes) -> dict[str, Any]:
+    """The JSON object in a body or a line; ValueError for others, NaN, Infinity and repeated names."""
+    try:
+        fields = strict_json(raw or b"{}")
+    except ValueError as error:
+        raise ValueError(f"the body must be JSON in UTF-8 ({error})") from None
+    if not isinstance(fields, dict):
+        raise ValueError("the body must be a JSON object")
+    return fields
+
+
+def read_stroke(fields: dict[str, Any], at: Positions, options: Any) -> CueStroke:
+    """The stroke in a request from the one position ``at``, where the cue ball has been placed; ``aim_at`` is solved."""
+    for name in ("speed",) if "aim_at" in fields else ("speed", "aim"):
+        if name not in fields:
+            form = '{"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
+            raise refuse(name, None, f"must be given: {form}")
+    if "aim_at" in fields and "aim" in fields:
+        raise refuse("aim", fields["aim"], "must be left out with aim_at")
+    aim = number("aim", fields.get("aim", 0.0), -1e6, 1e6)
+    parts = {name: fields[name] for name in ("speed", "side", "top", "elevation") if name in fields}
+    stroke = CueStroke(aim=aim, **parts)
+    if "aim_at" not in fields:
+        return stroke
+    ball, pocket = _read_pot(fields["aim_at"], at)
+    aims = Planner(options).pot_aim(at, [0], [ball], POCKET_AIMS[[pocket], :2], [stroke.numbers()])
+    return replace(stroke, aim=float(aims[0]))
+
+
+def _read_pot(asked: object, at: Positions) -> tuple[int, int]:
+    """Ball and pocket of {"pot": [ball, pocket]}."""
+    pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
+    if not isinstance(pair, list) or len(pair) != 2:
+        raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
+    ball = NAMES.index(choice("aim_at.pot[0]", pair[0], NAMES[1:]))
+    if not at.on_table[0, ball]:
+        raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
+    words = sorted(pair[1].lower().split()) if isinstance(pair[1], str) else None
+    for pocket, name in enumerate(POCKETS):  # "right middle" is "middle right"
+        if words == sorted(name.split()):
+            return ball, pocket
+    raise refuse("aim_at.pot[1]", pair[1], "must be one of " + ", ".join(map(repr, POCKETS)))
+
+
+def read_place(field: str, value: object) -> tuple[float, float]:
+    """Two numbers [m]; ValueError for anything else."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse(field, value, "must be [x, y] in metres")
+    return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
+
+
+def read_colour(field: str, value: object) -> int:
+    return colour(choice(field, value, COLOUR_NAMES))

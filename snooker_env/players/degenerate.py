@@ -1,7 +1,5 @@
-"""Which policies look at nothing, and must win no task? Strokes that are silly on any table, and one choice for all tables.
-
-``sn.player`` knows them as ``snooker_env.players.degenerate:softest`` and so on. ``...:constant_67`` plays one choice of
-``action="discrete"``, whose aim is solved for each table."""
+"""Which policies look at nothing, and must win no task? ``snooker_env.players.degenerate:softest`` and other silly strokes;
+``...:constant_67`` plays one choice of ``action="discrete"`` on all tables."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -44,9 +42,8 @@ class PlayAgain(GhostBall):
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         at = Positions.of(positions)
-        return replace(
-            super().play(at, seeds), decision=np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY)
-        )
+        again = np.where(at.choice, columns.PLAY_AGAIN, columns.PLAY)
+        return replace(super().play(at, seeds), decision=again)
 
 
 class Constant(ChoicePlayer):

@@ -1,7 +1,5 @@
 """How lucky was a stroke? What it brought and left, less the mean of that over fresh errors of the same stroke from the same
-table: a sum whose expectation is 0, whatever is expected of a table (``EXPECTED``).
-
-Fresh errors are drawn by the kernels that play: copies of a table, with other random streams, take the same turn."""
+table: a sum whose expectation is 0, whatever is expected. Copies of a table, with other random streams, take the same turn."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -14,19 +12,18 @@ from ..game.balls import GREEN, SPOTS, YELLOW
 from ..game.frame_columns import CHOICE, OVER, PHASE, POINTS, STRIKER, VISIT_COLUMNS
 from ..game.layouts import STORED
 from ..planning import Positions, processors
-from ..planning.learned.learned_value import LearnedValue
+from ..planning.judges import for_opponent
+from ..planning.learned.learned_worth import LearnedValue
 from ..planning.positions import of_tables
-from ..planning.visit_judge import for_opponent
 from ..tasks.frame_kernels import AGENT
 from ..tasks.frames import Frames
 from ..tasks.options import Options
 from ..tasks.tables import I_FOULS, StepOutput, Tables
 from .player import decision_seeds
-from .tactician import Tactician
+from .search_player import Tactician
 from .weights import learned_at, level_for
 
-DRAWS = 16
-"""Fresh errors of each stroke."""
+DRAWS = 16  # fresh errors of each stroke
 BATCH = 8192  # tables that are played at once
 _KEYS = 0x6C75636B  # of the fresh errors: no player draws with this seed
 Expected: TypeAlias = Callable[[Tables, StepOutput], Floats]
@@ -96,8 +93,7 @@ EXPECTED = {"points": expect_points, "legal": expect_legal, "lead": expect_lead,
 
 @lru_cache(maxsize=16)
 def mean_of_starts(options: Options) -> float | None:
-    """The mean of ``value_of`` over all starts of visits that a layout of stored tables deals, mirrored ones included;
-    None for other layouts, which have no known mean."""
+    """The mean of ``value_of`` over all starts of visits that a layout of stored tables deals; None for other layouts."""
     plan = options.rules.plan
     if plan.code[0] != STORED:
         return None
@@ -131,7 +127,6 @@ def fresh_streams(streams: Words) -> Words:
     """Random streams (n, DRAWS, 2) of errors that are independent of those that ``streams`` (n, 2) draw next."""
     fresh = np.zeros((len(streams), DRAWS, 2), np.uint64)
     own = decision_seeds(_KEYS, *streams.view(np.int64).T).astype(np.uint64) << np.uint64(32)
-    fresh[:, :, 0] = own[:, None] + np.arange(
-        1, 1 + DRAWS, dtype=np.uint64
-    )  # no seed of a player is that large
+    # no seed of a player is that large
+    fresh[:, :, 0] = own[:, None] + np.arange(1, 1 + DRAWS, dtype=np.uint64)
     return fresh

@@ -1,13 +1,10 @@
 """How does the package's agent of ``action="strokes"`` play? The network of ``snooker_env.sb3.StrokesPolicy`` in NumPy gives each
-stroke on the menu a score; the highest is played. No shot is simulated. ``train.py`` trains the network of visits,
-``examples/self_play.py`` that of frames, and ``results/make.sh weights`` writes their numbers into the package."""
-
-from collections.abc import Sequence
+stroke on the menu a score; the highest is played (``train.py``; ``examples/self_play.py`` for frames)."""
 
 import numpy as np
 
-from .._lib.types import Bools, Ints, Observation, Singles
-from ..planning.learned.dense_layers import Layers
+from .._lib.types import Bools, Ints, Observation
+from ..planning.learned.dense_layers import Layers, Weights
 from ..tasks.observations import STROKE_SIZE
 from ..tasks.options import Options
 from .seen import SeenPlayer
@@ -15,10 +12,9 @@ from .weights import learned_menu
 
 
 class MenuNetwork:
-    """Chooses from menus of a "visit" or a "frame", see ``Seen``; ``layers``: (out, in) and (out,) of each layer, which read
-    a stroke and the state."""
+    """Chooses from menus of a "visit" or a "frame", see ``Seen``, by ``layers`` that read a stroke and the state."""
 
-    def __init__(self, layers: Sequence[tuple[Singles, Singles]], task: str) -> None:
+    def __init__(self, layers: Weights, task: str) -> None:
         self.options: dict[str, str] = {"action": "strokes", "observation": "strokes", "task": task}
         self._layers = Layers(layers, "tanh")
 

@@ -7,7 +7,6 @@ from typing import Any
 
 from .._lib.check import choice, refuse
 from .._lib.files import strict_json
-from .._lib.notices import say
 from ..tasks.options import Options
 from .saved_models import by_train, entries
 
@@ -48,9 +47,8 @@ def _value(text: str) -> Any:
 
 def add_model_options(parser: ArgumentParser) -> None:
     """Add ``--trust`` and ``--options`` to a command that takes a model's file."""
-    parser.add_argument(
-        "--trust", action="store_true", help="allow the pickled code in a model's file to run"
-    )
+    trusts = "allow the pickled code in a model's file to run"
+    parser.add_argument("--trust", action="store_true", help=trusts)
     how = "how to read the actions of a model of Stable-Baselines3, for example aim=absolute"
     parser.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
 
@@ -61,14 +59,3 @@ def of_others(path: str | Path) -> bool:
         return Path(path).is_file() and not by_train(entries(path))
     except Exception:  # ``SavedModel`` says what is wrong with it
         return Path(path).suffix == ".zip"
-
-
-def say_assumption(path: str | Path, options: Mapping[str, Any]) -> None:
-    """Say on stderr, once in a process, that the aim of a model is assumed because its options do not name one."""
-    if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
-        _SAID.append(str(path))
-        told = 'for another aim give --options aim=absolute, or options={"aim": "absolute"}'
-        say(f"{path}: aim=pot is assumed, as in Snooker-v0; {told}")
-
-
-_SAID: list[str] = []  # the model of which that was said

@@ -1,11 +1,14 @@
-"""Who sits opposite the agent of a frame? A player, asked once for all tables that wait, or several in a pool."""
+"""Who sits opposite the agent of a frame? A player, asked once for all tables that wait, or one of several in a pool, drawn for
+each frame from the table's own stream."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
-from .._lib.check import refuse, refuse_what
+from .._lib.check import integer, number, refuse, refuse_what
 from .._lib.types import Floats, Ints
 from ..game.frame_columns import OPPONENT, Layouts
 from ..game.sides import strikers_own
@@ -15,14 +18,60 @@ from ..tasks.options import OPPONENTS, Options
 from ..tasks.tables import Crew, uniform
 from .choices import GhostBall
 from .model_options import of_others
-from .opponent_pool import OpponentPool
 from .player import Player, Strokes
 from .resolver import PROGRAM
 from .resolver import player as player_of
-from .saved import FittingModel, SavedNetwork
+from .saved_models import FittingModel, SavedNetwork
 from .seen import SeenPlayer
 
 _KINDS = (ValueError, TypeError, ImportError)
+Member: TypeAlias = str | Path | Player  # whom a pool may hold: a player, or its name
+
+
+class OpponentPool:
+    """Several opponents, one of whom is drawn for each table and frame, by their weights: the same seed meets the same.
+
+    Parameters
+    ----------
+    members, weights : iterable, optional
+        Players, or their names; more may be added at any time. One weight for each, at least 0; default 1.
+
+    Examples
+    --------
+    >>> from snooker_env.players import OpponentPool
+    >>> pool = OpponentPool(["random", "ghost_ball"], weights=[1, 3])
+    >>> pool.add("random")
+    >>> pool.weights
+    (1.0, 3.0, 1.0)
+    """
+
+    def __init__(self, members: Iterable[Member] | None = None, weights: Iterable[float] | None = None):
+        self.members: tuple[Member, ...] = ()
+        self.weights: tuple[float, ...] = ()
+        listed = [] if members is None else list(members)
+        if members is not None and not listed:
+            allowed = "must hold one member at least; leave them out where add(...) follows"
+            raise refuse("members", listed, allowed)
+        each = [1.0] * len(listed) if weights is None else list(weights)
+        if len(each) != len(listed):
+            raise refuse("weights", each, f"must be {len(listed)} numbers, one for each member")
+        for member, weight in zip(listed, each, strict=True):
+            self.add(member, weight)
+        if listed and not any(self.weights):
+            raise refuse("weights", each, "must hold a number above 0: nobody could be drawn")
+
+    def add(self, member: Member, weight: float = 1.0) -> None:
+        """Add a member, which later frames may draw; ValueError for a pool, or a weight below 0."""
+        nobody = member is None or (isinstance(member, str) and member == "none")
+        if nobody or isinstance(member, OpponentPool):
+            raise refuse("member", member, "must be one opponent: a name or a player")
+        self.weights = (*self.weights, number("weight", weight, 0.0))
+        self.members = (*self.members, member)
+
+    def set_weight(self, index: int, weight: float) -> None:
+        """Change the weight of ``members[index]``, 0: not drawn any more; ValueError for a bad number."""
+        k = integer("index", index, 0, len(self.members) - 1)
+        self.weights = (*self.weights[:k], number("weight", weight, 0.0), *self.weights[k + 1 :])
 
 
 def draw_uniform(frames: Frames, which: Ints) -> Floats:
@@ -94,26 +143,21 @@ class PoolOpponent:
     def strokes(self, frames: Frames, which: Ints, crew: Crew) -> Asked:
         """See ``Opponent.strokes``: each table's own member is asked."""
         self._complete()
-        self._draw(frames, which)
+        new, shares = which[frames.game[which, OPPONENT] == 0], np.cumsum(self.pool.weights)
+        if len(new):
+            if not len(shares) or shares[-1] <= 0.0:
+                raise refuse("opponent", self.name, "must have a member with a weight above 0")
+            drawn = draw_uniform(frames, new) * shares[-1]
+            frames.game[new, OPPONENT] = 1 + np.searchsorted(shares, drawn, side="right")
         playing, asked = frames.game[which, OPPONENT], _room(frames.n)
-        for number in np.unique(playing).tolist():
-            if number > len(self._ready):
+        for member in np.unique(playing).tolist():
+            if member > len(self._ready):
                 allowed = f"must be below {len(self._ready)}, as many as the pool has"
-                raise refuse("opponent", f"member {number - 1} of a pool", allowed)
-            its = which[playing == number]
-            answer = self._ready[number - 1].strokes(frames, its, crew)
+                raise refuse("opponent", f"member {member - 1} of a pool", allowed)
+            its = which[playing == member]
+            answer = self._ready[member - 1].strokes(frames, its, crew)
             _write(asked, its, tuple(part[its] for part in answer))
         return asked
-
-    def _draw(self, frames: Frames, which: Ints) -> None:
-        new = which[frames.game[which, OPPONENT] == 0]
-        if not len(new):
-            return
-        shares = np.cumsum(self.pool.weights)
-        if not len(shares) or shares[-1] <= 0.0:
-            raise refuse("opponent", self.name, "must have a member with a weight above 0")
-        numbers = draw_uniform(frames, new)
-        frames.game[new, OPPONENT] = 1 + np.searchsorted(shares, numbers * shares[-1], side="right")
 
 
 def _room(n: int) -> Asked:
@@ -128,17 +172,12 @@ def _write(asked: Asked, rows: Ints, parts: tuple[Floats | Ints, ...]) -> None:
 
 def opponent_of(opponent: str | Path | Player | OpponentPool, options: Options) -> Opponent:
     """The opponent that a name, several with commas, a player or a pool stands for in frames with these options."""
-    if (
-        isinstance(opponent, str)
-        and "," in opponent
-        and not opponent.startswith(PROGRAM)
-        and not os.path.exists(opponent)
-    ):
-        names = [name.strip() for name in opponent.split(",")]
+    text = opponent if isinstance(opponent, str) else ""
+    if "," in text and not text.startswith(PROGRAM) and not os.path.exists(text):
+        names = [name.strip() for name in text.split(",")]
         if "none" in names:
-            raise refuse(
-                "opponent", opponent, "must be 'none' alone, or names of players with commas between them"
-            )
+            allowed = "must be 'none' alone, or names of players with commas between them"
+            raise refuse("opponent", opponent, allowed)
         opponent = OpponentPool(names)
     if isinstance(opponent, OpponentPool):
         return PoolOpponent(opponent, options)

@@ -1,37 +1,31 @@
-"""What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``).
-
-It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
-table or a thousand."""
+"""What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``); it keeps nothing."""
 
 import copy
-from collections.abc import Mapping
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from .._lib.check import refuse
-from .._lib.types import Bools, Environment, Floats, Integers, Ints
+from .._lib.types import Bools, Floats, Integers, Ints
 from ..game.frame_columns import PLACE_ANYWHERE, PLAY
 from ..planning.ghost_ball import put_in_hand
-from ..planning.planner import options_in
+from ..planning.planner import RulesLike, options_in
 from ..planning.positions import Positions, PositionsLike, seeds_of
-from ..planning.prospects import prospects_of
+from ..planning.pot_geometry import prospects_of
 from ..planning.search import Ranked
 from ..planning.strokes import Strokes
 from ..planning.worth import apply_decision, decide
 from ..tasks.options import Options
 
 __all__ = ["FRAMES", "VISITS", "BoundPlayer", "Player", "Ranked", "Strokes", "ask_player", "decision_seeds"]
-RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]  # a dict: fields of ``Options``
 
 
 @runtime_checkable
 class Player(Protocol):
     """A player: a function of positions and a seed.
 
-    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, with the stroke
-    that ``play`` returns first. Advice shows this ranking. A player whose ``frames`` is False knows only visits and is
-    not asked for advice in frames.
+    It may also have ``rank(positions, seeds)``, a ``Ranked`` for each position, with the stroke that ``play`` returns first:
+    advice shows it. A player whose ``frames`` is False knows only visits and is not asked for advice in frames.
 
     Examples
     --------
@@ -80,16 +74,15 @@ class BoundPlayer:
         """What a player makes once for where it plays."""
 
     def worth(self, at: Positions) -> Floats:
-        """Return what positions of frames are worth to their strikers, for decisions after fouls: float64 (n,).
-
-        By default the likeliest pot decides: a striker who is likely to pot gains by playing next."""
+        """Return what positions of frames are worth to their strikers, for decisions after fouls: float64 (n,). By default
+        the likeliest pot decides."""
         rules, (visits, _) = self.options.rules, place_cue_balls(at, np.zeros(len(at), np.int64))
         spread = rules.noise.spread(rules.physics)
         return 2.0 * prospects_of(visits, spread, most=_POTS, rails=rules.rails)[1].max(axis=1) - 1.0
 
     def start_playing(self, positions: PositionsLike, seeds: Integers) -> tuple[Positions, Floats, Ints]:
-        """Return from where the player plays n positions: as visits after its decisions, with cue balls placed; the places
-        (n, 2), NaN where none was placed; the decisions (n,), the best by ``worth``."""
+        """Return n positions as visits after the player's decisions (n,), by ``worth``, with cue balls placed at places (n, 2),
+        else NaN."""
         at, code = Positions.of(positions), self.options.rules.rule_set.code
         decisions, rows = np.full(len(at), PLAY), np.flatnonzero(at.choice)
         if len(rows):
@@ -142,8 +135,7 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
     Parameters
     ----------
     seed, tables, decision
-        The player's seed, an int; a number for each table, int (n,), such as the seed of its deal; the number of
-        the decision, one for all tables or one for each.
+        The player's seed, an int; a number for each table, int (n,); that of the decision, one for all tables or for each.
 
     Returns
     -------
@@ -170,10 +162,8 @@ def ask_player(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats
 
     Parameters
     ----------
-    player, tables
-        The player, bound, and n tables, made with ``VISITS`` or ``FRAMES``.
-    going, seeds : numpy.ndarray
-        Tables on which the player is asked, bool (n,); seeds of these decisions, int64 (n,).
+    player, tables, going, seeds
+        The player; n tables, made with ``VISITS`` or ``FRAMES``; on which it is asked, bool (n,); seeds, int64 (n,).
 
     Returns
     -------

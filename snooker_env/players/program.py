@@ -1,10 +1,5 @@
-"""How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
-
-It is started at the first question. For each stroke it gets one line, what ``GET api/state`` says of the table with a
-"seed", and answers with one, as ``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers
-with a "choice"; after "play" or "anywhere" alone it gets the state once more, for its stroke. Its standard error is that of
-this process.
-"""
+"""How does an external program play? JSON lines: for each stroke a state on its standard input, a stroke on its output, as
+``GET api/state`` and ``POST api/stroke`` have them (docs/play/protocol.md). It is started at the first question."""
 
 import contextlib
 import json
@@ -29,8 +24,8 @@ from ..planning.worth import apply_decision
 from ..tasks.box_actions import MIN_SPEED
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
+from .cue_stroke import STROKE, read_object, read_place, read_stroke
 from .player import BoundPlayer, Strokes
-from .requests import STROKE, read_object, read_place, read_stroke
 from .seen import begun
 from .table_report import report_game, report_turn, say_score, say_table, visit_of
 
@@ -43,8 +38,8 @@ class AgentError(RuntimeError):
 
 
 class ProgramPlayer(BoundPlayer):
-    """An external program as a player: ``command`` is split as by a shell, but no shell runs it; ``timeout`` limits the time
-    of an answer [s]. All that ``at`` makes of it share one process."""
+    """An external program as a player: ``command`` is split as by a shell, but no shell runs it; ``timeout`` of an answer [s].
+    All that ``at`` makes of it share one process."""
 
     def __init__(self, command: str, *, timeout: float = 60.0):
         try:
@@ -60,9 +55,7 @@ class ProgramPlayer(BoundPlayer):
         self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
-
-        AgentError if the program ends, is too slow, or its answer is no stroke."""
+        """Return what the program answers; AgentError if it ends, is too slow, or its answer is no stroke."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at)).tolist()
@@ -87,7 +80,7 @@ class ProgramPlayer(BoundPlayer):
             return self._read(answer, at, decided)
         except ValueError as error:
             what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
-            raise AgentError(f"the program {self._lines.command!r} {what}") from None
+            raise self._lines.failure(what) from None
 
     def _read(self, answer: dict[str, Any], at: Positions, decided: str) -> Strokes:
         """The stroke that an answer asks for, after what was ``decided``; ValueError names what is wrong."""
@@ -106,12 +99,11 @@ class ProgramPlayer(BoundPlayer):
             if not at.in_hand[0]:
                 raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
             at = at.copy()
-            where = place_cue(at.positions[0], at.on_table[0], x, y, anywhere=bool(at.anywhere[0]))
-            at.positions[0, CUE] = where
+            free = bool(at.anywhere[0])
+            at.positions[0, CUE] = place_cue(at.positions[0], at.on_table[0], x, y, anywhere=free)
         stroke = read_stroke(answer, visit_of(self._frame(at), at), self.options)
-        return _one_stroke(
-            stroke.numbers(), at.positions[0, CUE] if at.in_hand[0] else None, CHOICES.index(what)
-        )
+        put = at.positions[0, CUE] if at.in_hand[0] else None
+        return _one_stroke(stroke.numbers(), put, CHOICES.index(what))
 
     def _frame(self, at: Positions) -> Frame:
         rules, saved = self.options.rules, at.saved or Layouts(at.positions, at.on_table)
@@ -125,30 +117,26 @@ class ProgramPlayer(BoundPlayer):
         return state | {"text": say_table(state, lines, [state["words"], say_score(state, LABELS)])}
 
     def _ask(self, at: Positions, seed: int) -> dict[str, Any]:
-        answer = self._answer(self._state(at) | {"seed": seed})
+        state = json.dumps(self._state(at) | {"seed": seed}, separators=(",", ":"))
+        answer = self._lines.ask(state.encode() + b"\n")
         try:
             return read_object(answer.strip())
         except ValueError as error:
-            what = f"answered {_short(answer)}, which is no stroke: {error}"
-            raise AgentError(f"the program {self._lines.command!r} {what}") from None
-
-    def _answer(self, state: dict[str, Any]) -> bytes:
-        return self._lines.ask(json.dumps(state, separators=(",", ":")).encode() + b"\n")
+            raise self._lines.failure(f"answered {_short(answer)}, which is no stroke: {error}") from None
 
 
 class _Lines:
     """A process that answers each line with one line; it is started by the first."""
 
     def __init__(self, command: str, words: list[str], timeout: float):
-        self.command, self.timeout = command, timeout
-        self._words = words
+        self.command, self.timeout, self._words = command, timeout, words
         self._process: Any = None
 
     def _start(self):
         try:
             self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         except OSError as error:
-            raise AgentError(f"the program {self.command!r} cannot be started: {error}") from None
+            raise self.failure(f"cannot be started: {error}") from None
         self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
         self._states: queue.Queue[bytes] = queue.Queue()
         self._taken = threading.Event()  # the program has read all that was written
@@ -170,24 +158,24 @@ class _Lines:
             try:
                 answer = self._answers.get(timeout=self.timeout)
             except queue.Empty:
-                raise self._failure(f"gave no stroke within {self.timeout:g} s") from None
+                raise self.failure(f"gave no stroke within {self.timeout:g} s") from None
             if answer and not self._taken.wait(max(0.0, until - time.monotonic())):
-                raise self._failure(f"did not read its state within {self.timeout:g} s") from None
+                raise self.failure(f"did not read its state within {self.timeout:g} s") from None
         else:
             if answer:
-                raise self._failure(f"answered {_short(answer)} without a state: one line for each")
+                raise self.failure(f"answered {_short(answer)} without a state: one line for each")
         if len(answer) > LONGEST:
-            raise self._failure(f"answered a line of more than {LONGEST:,} bytes")
+            raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
         if not answer:
             process: Any = self._process
             try:
                 code = process.wait(2.0)
             except subprocess.TimeoutExpired:
-                raise self._failure("closed its output") from None
-            raise self._failure(f"ended with exit code {code} instead of a stroke")
+                raise self.failure("closed its output") from None
+            raise self.failure(f"ended with exit code {code} instead of a stroke")
         return answer
 
-    def _failure(self, what):
+    def failure(self, what: str) -> AgentError:
         return AgentError(f"the program {self.command!r} {what}")
 
     def close(self) -> None:

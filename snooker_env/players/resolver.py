@@ -15,9 +15,8 @@ from .choices import GhostBall, Random
 from .model_options import LEFT_OUT, check_model_options, of_others
 from .player import Player
 from .program import ProgramPlayer
-from .search_player import SearchPlayer
+from .search_player import SearchPlayer, Tactician
 from .stroke_value_player import StrokeValuePlayer
-from .tactician import Tactician
 
 GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
 READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
@@ -198,7 +197,7 @@ def _read(path: Path) -> Any:
 def _of_file(path: Path, trust: bool, options: dict[str, Any]) -> Player:
     made = _read(path)
     if made is None:
-        from .saved import saved_player
+        from .saved_models import saved_player
 
         return saved_player(path, options, trust)
     if options:

@@ -1,22 +1,28 @@
-"""How is a model's file read safely? As plain data first, without running anything: a zip of
-Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle,
-whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires consent."""
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its zip is first read as plain data, without running anything: only
+``SavedModel.network`` unpickles its ``data``, whose code runs when loaded, and requires consent."""
 
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from gymnasium import spaces
 
 from .._lib.check import refuse
 from .._lib.files import MOST_JSON, strict_json, unzip
 from .._lib.install import missing
+from .._lib.notices import say
+from .._lib.types import Bools, Ints, Observation
+from ..tasks.foreseen import STATES
+from ..tasks.observations import OBSERVATIONS, STROKE_SIZE, space
+from ..tasks.options import Options
+from ..tasks.stroke_menu import SPEEDS, speeds_of
+from .seen import SeenPlayer
 
-PLAIN = "model.json"
-"""The part that replaces ``data`` in the zips of ``results/weights``, which hold no pickles."""
+PLAIN = "model.json"  # the part that replaces ``data`` in zips without pickles
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
     ("sb3_contrib", "TRPO", {"cg_max_steps"}),
@@ -59,8 +65,7 @@ def entries(path: str | Path) -> dict[str, Any]:
     """The description that a model's ``.zip`` holds of itself, ``PLAIN`` or ``data``; pickles in it stay text."""
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
-    # SB3 stores the last observations there
-    description = strict_json(part(path, name, MOST_JSON))
+    description = strict_json(part(path, name, MOST_JSON))  # SB3 stores the last observations there
     if not isinstance(description, dict):
         raise ValueError(f"{name} holds no object")
     return description
@@ -100,8 +105,7 @@ class SavedModel:
 
     @classmethod
     def of(cls, path: str | Path, field: str) -> "SavedModel":
-        """Read a ``.zip``; ``field``: the argument that errors name. ValueError if it is no model of
-        Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment shows."""
+        """Read a ``.zip``; ValueError, naming ``field``, if it is no model of Stable-Baselines3, or one of ``train.py``."""
         try:
             data = entries(path)
             ours = by_train(data)
@@ -127,18 +131,16 @@ class SavedModel:
                 buffers = self.data.get("rollout_buffer_class")
                 masked = isinstance(buffers, dict) and "maskable" in str(buffers.get("__module__"))
                 return ("sb3_contrib", "MaskablePPO") if masked else (library, name)
-        raise self.refuse_file(
-            "must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS)
-        )
+        names = ", ".join(name for _, name, _ in _ALGORITHMS)
+        raise self.refuse_file(f"must be a model of MaskablePPO, {names}")
 
-    def network(self, trust: bool, consent: str) -> Any:
-        """Load the model's policy on the CPU, which runs the code in its pickles: ValueError without
-        ``trust``, before anything runs, or if it cannot be loaded. ImportError without the library.
-        ``consent``: how a user gives it, as "trust=True", for the error."""
+    def network(self, trust: bool) -> Any:
+        """Load the model's policy on the CPU, which runs the code in its pickles: ValueError without ``trust``, before anything
+        runs, or if it cannot be loaded. ImportError without the library."""
         library, name = self.algorithm
         if not trust:
-            why = f"holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with {consent}"
-            raise self.refuse_file(why)
+            why = "holds pickled Python code, which runs when it is loaded: must be a file that you trust"
+            raise self.refuse_file(f"{why}, and come with trust=True, or --trust on the command line")
         try:
             if library == "sb3_contrib":
                 import sb3_contrib as module
@@ -158,3 +160,110 @@ class SavedModel:
             why = str(error).partition("\n")[0]
             allowed = f"must be a model that {name} can load ({type(error).__name__}: {why})"
             raise self.refuse_file(allowed) from error
+
+
+def _speeds_seen(outlined: tuple[str, Any], frame: bool) -> int:
+    """The speeds of the menu in an observation with this outline; 0: it is no menu's."""
+    size = outlined[1][0] if outlined[0] == "Box" and len(outlined[1]) == 1 else 0
+    rows, rest = divmod(size - STATES[frame], STROKE_SIZE)
+    return 0 if rest else speeds_of(rows, frame)
+
+
+@dataclass(frozen=True)
+class FittingModel:
+    """A model's file, not unpickled, with fitting ``options``: how it sees and acts, see ``Seen``."""
+
+    saved: SavedModel
+    options: dict[str, Any]
+
+    @classmethod
+    def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
+        """Read the description in a model's file; ValueError, naming ``field``, if its spaces are others."""
+        saved = SavedModel.of(path, field)
+        if saved.action[0] == "Discrete":
+            choices = int(saved.action[1])
+            speeds = speeds_of(choices, False) or speeds_of(choices, True)
+            read = {"action": "strokes", "speeds": speeds} if speeds else {"action": "discrete"}
+            options = read | options
+        for frame, replaced in ((False, False), (True, False), (True, True)):
+            for kind in OBSERVATIONS[frame:]:
+                task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
+                told = {name: options[name] for name in options if frame or name != "says"}
+                model = cls(saved, told | task | {"observation": kind})
+                if kind == "strokes" and not replaced:
+                    model.options.setdefault("speeds", _speeds_seen(saved.observation, frame) or SPEEDS)
+                many, speeds = getattr(model.actions, "n", 0), model.options.get("speeds", SPEEDS)
+                shown = space(kind, frame=frame, replaced=replaced, choices=many, speeds=speeds)
+                if outline(shown) == saved.observation:
+                    if outline(model.actions) != saved.action:
+                        told = "give the options of its training, for example placement=True"
+                        raise saved.refuse_file(f"must be a model whose actions are {model.actions}: {told}")
+                    return model
+        view = "must be a model trained on the observation of a visit or a frame, and nothing else"
+        raise saved.refuse_file(view)
+
+    @property
+    def actions(self) -> Any:
+        flat: Any = self.options | {"observation": "flat"}
+        return Options(**flat).rules.actions.space
+
+    def network(self, trust: bool) -> Any:
+        """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
+        network = self.saved.network(trust)
+        same_view = outline(network.observation_space) == self.saved.observation
+        if not same_view or network.action_space != self.actions:
+            raise self.saved.refuse_file("must be a model whose spaces are those that its file describes")
+        return network
+
+
+class SavedNetwork:
+    """The policy of a saved model, deterministic, as a ``Seen``; loaded again in another process."""
+
+    def __init__(self, model: FittingModel, trust: bool):
+        self.options, self.model, self._trust = model.options, model, trust
+        self._network = model.network(trust)
+        self._masked = model.saved.algorithm[1] == "MaskablePPO"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_network": None}
+
+    def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
+        """The greedy actions, row by row: the products of a batch round otherwise than those of one row."""
+        if self._network is None:
+            self._network = self.model.network(self._trust)
+        actions = []
+        with one_thread():
+            for k in range(len(seeds)):
+                flat = not isinstance(observations, dict)
+                row = observations[k] if flat else {name: part[k] for name, part in observations.items()}
+                masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
+                actions.append(self._network.predict(row, deterministic=True, **masked)[0])
+        space = self._network.action_space
+        answer = np.array(actions).reshape(len(seeds), *space.shape)
+        return np.clip(answer, -1.0, 1.0) if space.shape else answer
+
+
+def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
+    """The player of a model's ``.zip``, with ``options``; ValueError for those of ``train.py``."""
+    try:
+        ours = path.is_dir() or by_train(entries(path))
+    except Exception as error:
+        raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
+    if ours:
+        words = "must be read in a clone of the repository, without options"
+        raise refuse(field, str(path), f"{words}: it is a model or a run of train.py")
+    model = FittingModel.of(path, options, field)
+    made = SeenPlayer(SavedNetwork(model, trust), name=str(path))
+    say_assumption(path, model.options)
+    return made
+
+
+def say_assumption(path: str | Path, options: Mapping[str, Any]) -> None:
+    """Say on stderr, once in a process, that the aim of a model is assumed because its options do not name one."""
+    if options.get("action", "box") == "box" and "aim" not in options and not _SAID:
+        _SAID.append(str(path))
+        told = 'for another aim give --options aim=absolute, or options={"aim": "absolute"}'
+        say(f"{path}: aim=pot is assumed, as in Snooker-v0; {told}")
+
+
+_SAID: list[str] = []  # the model of which that was said

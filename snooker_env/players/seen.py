@@ -16,7 +16,7 @@ from ..planning.strokes import decode
 from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames, sayings
 from ..tasks.observations import arrange
-from ..tasks.options import Options, Rules
+from ..tasks.options import Options
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, place_cue_balls
 
@@ -27,8 +27,8 @@ OPTIONS = (*Options.group("action"), *Options.group("view"), "miss")  # with "mi
 class Seen(Protocol):
     """An object that acts on observations: a network, or a model of another library.
 
-    Its attribute ``options``, if it has one, is a dict that says how observations look and how actions are read
-    ("action", "aim", "observation", "placement", ... of ``Options``), with "task": "visit" (default) or "frame".
+    Its attribute ``options``, if it has one, is a dict of how observations look and actions are read ("action", "observation",
+    ... of ``Options``), with "task": "visit" (default) or "frame".
 
     Examples
     --------
@@ -50,17 +50,13 @@ class Seen(Protocol):
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    A player that sees visits can play frames too: with a free ball any colour is on; a cue ball in hand that its
-    action does not place stands where ``ghost_ball`` puts it; after a foul the player plays on.
+    One that sees visits can play frames too: with a free ball any colour is on; a cue ball in hand that its action does not
+    place stands where ``ghost_ball`` puts it; after a foul it plays on.
 
     Parameters
     ----------
-    seen : Seen
-        The object that acts.
-    options : mapping, optional
-        How ``seen`` observes and acts, see ``Seen``; default: its attribute ``options``, or none.
-    name : str, optional
-        The name in errors.
+    seen, options, name
+        The object that acts; how it does, default: its attribute ``options``, or none; the name in errors.
 
     Examples
     --------
@@ -135,8 +131,10 @@ class SeenPlayer(BoundPlayer):
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, n if rules.drawn else 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
-        if rules.drawn:
-            tables.set_conditions(np.arange(n), _known_conditions(at, rules))
+        if rules.drawn:  # a table whose constants are not drawn has the nominal ones
+            own = at.known_to(rules).conditions
+            nominals = np.tile(nominal(rules.physics), (n, 1))
+            tables.set_conditions(np.arange(n), nominals if own is None else own)
         if self.frames:
             none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
@@ -151,12 +149,6 @@ class SeenPlayer(BoundPlayer):
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: act(...) returned {error}") from None
-
-
-def _known_conditions(at: Positions, rules: Rules) -> Floats:
-    """The constants (n, 8) of the tables as who plays under ``rules`` knows them: if not drawn the nominal ones."""
-    own = at.known_to(rules).conditions
-    return np.tile(nominal(rules.physics), (len(at), 1)) if own is None else own
 
 
 def begun(at: Positions) -> Positions:

@@ -9,16 +9,15 @@ from .._lib.types import Floats, Integers
 from ..planning import Positions
 from ..planning.aims import Dynamics
 from ..planning.learned.frame_strokes import FOULS, FrameStrokes
-from ..planning.learned.learned_value import LearnedValue
-from ..planning.learned.learned_worth import LearnedWorth
+from ..planning.learned.learned_worth import LearnedValue, LearnedWorth
 from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.proposals import over_cushions
 from ..planning.stroke_columns import COLUMNS
 from ..tasks.options import Options
 from .choices import GhostBall
-from .frame_decisions import FramePlayer
 from .player import Ranked, Strokes, place_cue_balls
+from .search_player import FramePlayer
 from .seen import begun
 from .weights import StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
@@ -42,9 +41,8 @@ class StrokeValuePlayer(FramePlayer):
         # one of the value's networks says almost as much as all, in a quarter of the time
         value, worth = LearnedValue(learned.value[:1], spread), LearnedValue(learned.value, spread)
         self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers.visits)
-        self.search = self.judge = FrameStrokes(
-            rules, self.values, LearnedWorth(worth, learned_worth()[0]), layers.frames
-        )
+        own = LearnedWorth(worth, learned_worth()[0])
+        self.search = self.judge = FrameStrokes(rules, self.values, own, layers.frames)
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         at = Positions.of(positions)
@@ -78,8 +76,7 @@ class StrokeValuePlayer(FramePlayer):
         return made
 
     def _fairest(self, positions: Positions, seeds: Integers) -> Strokes:
-        """Strokes that need only be fair: at a ball that is seen, if it is likely to be struck, else over cushions; where
-        there is neither those of ``ghost_ball``."""
+        """Strokes that need only be fair: at a ball that is likely to be struck, else over cushions, else as ``ghost_ball``."""
         at, keys = positions.known_to(self.options.rules), seeds_of(seeds, len(positions))
         plain, (visits, places) = self._plain.play(at, keys).values, place_cue_balls(at, keys)
         every, (strokes, there, seen) = np.arange(len(at)), self.search.look(begun(visits), keys)

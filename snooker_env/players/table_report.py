@@ -1,6 +1,4 @@
-"""What is on the table, and what may be done? As JSON types and in words, for programs and the page.
-
-docs/play/protocol.md describes the fields; the page adds what is its own."""
+"""What is on the table, and what may be done? As JSON types and in words, for programs and the page (docs/play/protocol.md)."""
 
 from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, hypot, radians
@@ -75,28 +73,23 @@ def find_lines(positions: list[Positions], on: int, noise: str) -> list[Line]:
     unit = onward / np.maximum(np.hypot(*onward.T), 1e-12)[:, None]
     ghosts = places[balls] - 2.0 * BALL_RADIUS * unit
     rows = np.zeros(len(ways), np.int64)
-    skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
-    barred = obstructions(at, rows, places[balls], aims, ignore=skip)
-    barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    each = zip(ways, ghosts, aims, barred, strict=True)
-    return [_line(*one, places, tolerances, spread) for one in each]
-
-
-def _line(which, ghost, aim, barred, places, tolerances, spread):
-    ball, pocket = which
-    run, way = ghost - places[CUE], aim - places[ball]
-    far, on = hypot(*run), hypot(*way)
-    cos_cut = float(run @ way / max(far * on, 1e-12))
-    cut = acos(min(1.0, max(-1.0, cos_cut)))
-    tolerance = tolerances.get((ball, pocket), 0.0)
-    blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(barred))
-    why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
-    why = "" if tolerance or blocked else why
-    chance = None
-    if spread is not None and tolerance:
-        chance = chance_at(tolerance, far + on, spread)
-    aim = atan2(run[1], run[0])
-    return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
+    skip = np.column_stack([np.full(len(ways), CUE), balls])
+    barred = obstructions(at, rows, places[balls], aims.copy(), skip)
+    barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, skip)
+    lines = []
+    for way, ghost, aim, others in zip(ways, ghosts, aims, barred, strict=True):
+        run, onward = ghost - places[CUE], aim - places[way[0]]
+        far, on_far = hypot(*run), hypot(*onward)
+        cos_cut = float(run @ onward / max(far * on_far, 1e-12))
+        cut, tolerance = acos(min(1.0, max(-1.0, cos_cut))), tolerances.get(way, 0.0)
+        blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(others))
+        why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+        chance = None
+        if spread is not None and tolerance:
+            chance = chance_at(tolerance, far + on_far, spread)
+        seen = tolerance > 0.0, blocked, "" if tolerance or blocked else why
+        lines.append(Line(*way, *seen, cut, far, on_far, atan2(run[1], run[0]), tolerance, chance))
+    return lines
 
 
 _ALONG = (
@@ -118,11 +111,9 @@ def _say_turn(frame: Frame, labels: tuple[str, str]) -> str:
     if frame.phase == "choice":
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    on = frame.ball_on.name.lower().replace("_", " ") + (
-        ", and a free ball are" if frame.free_ball else " is"
-    )
+    on, free = frame.ball_on.name.lower().replace("_", " "), ", and a free ball are"
     placing = "; the cue ball is in hand" if frame.in_hand else ""
-    return f"{yours}: {on} on{placing}."
+    return f"{yours}: {on}{free if frame.free_ball else ' is'} on{placing}."
 
 
 def where(ball: int, x: float, y: float) -> str:
@@ -183,9 +174,7 @@ def report_game(
 def report_turn(
     frame: Frame, at: Positions, table: Table, noise: NoiseName
 ) -> tuple[dict[str, Any], list[Line]]:
-    """What the striker may do in the one position ``at``, as JSON types, and the lines to pockets.
-
-    ``noise``: the striker's."""
+    """What the striker may do in the one position ``at``, as JSON types, and the lines to pockets under the ``noise``."""
     hidden, lines, on = False, [], 0
     if frame.phase == "stroke":
         both = [visit_of(frame, at, free_ball=free) for free in (False, True)[: 1 + frame.free_ball]]

@@ -268,7 +268,7 @@ def measured(case, seeds=SEEDS, samples=SAMPLES, visits=0, agent=None):
         begin = start_from(start, one.stroke)
         stops = practice.play(begin, np.zeros(samples, np.int64), strokes, keys(seed, PURPOSE, samples))
         theirs = arrive(stops.afterstates[find_arrivals(stops.afterstates)])
-        cue, hidden = theirs.positions[:, 0], ~clear_paths(theirs).any_part
+        cue, hidden = theirs.positions[:, 0], ~clear_paths(theirs)
         gaps = np.hypot(*(theirs.positions - cue[:, None]).transpose(2, 0, 1))
         far = np.where(theirs.balls_on, gaps, np.inf).min(axis=1) >= FAR
         chances = prospects_of(theirs, LEVELS[NOISE].spread(), rails=practice.options.rules.rails)[1]

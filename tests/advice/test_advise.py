@@ -97,7 +97,7 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
     for position, kind, agent in (escape, contact):
         one = sn.advise(position, agent=agent, n=1, samples=60, visits=0)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
-        assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
+        assert bool(clear_paths(position)[0]) == (kind == "contact")
         points, fouls, _ = played(position, one.stroke, 400, noise="professional")
         assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60)
         assert points.mean() == pytest.approx(one.points, abs=0.3)

@@ -21,7 +21,7 @@ def test_there_are_twenty_and_no_pot_is_likely_in_any():
         chances = prospects_of(here, LEVELS[NOISE].spread())[1]
         assert chances.max() < LIKELY, name
         assert case.coach and case.most and set(case.first) <= set(range(1, 22))
-        hidden = not sn.planning.clear_paths(case.position).any_part[0]
+        hidden = not sn.planning.clear_paths(case.position)[0]
         assert hidden == name.startswith("snookered"), name
         assert sn.advise(
             case.position, scores=case.scores, options=OPTIONS, agent="stroke_value", n=1, samples=1, visits=0

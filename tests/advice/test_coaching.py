@@ -23,7 +23,7 @@ from snooker_env.advice.coach import count_costs, value_strokes
 from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
 from snooker_env.advice.recorded import agree_options
-from snooker_env.planning import Planner, pot_aim, pots
+from snooker_env.planning import Planner, pots
 from snooker_env.tasks import LEVELS, Noise
 from tests.refusals import refuse_each, refused
 
@@ -44,7 +44,7 @@ def pot_of(position):
     direct = pots(position)
     ball, pocket = int(direct.ball[0, 0]), int(direct.pocket[0, 0])
     target = sn.geometry.POCKET_AIMS[pocket, :2]
-    aim = float(pot_aim(position, [0], [ball], [target], 2.0)[0])
+    aim = float(Planner({}).pot_aim(position, [0], [ball], [target], 2.0)[0])
     return ball, pocket, CueStroke(speed=2.0, aim=aim)
 
 

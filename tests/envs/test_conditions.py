@@ -138,8 +138,8 @@ def test_the_aim_is_solved_for_the_table():
     nominal = Planner(options.but(conditions="fixed")).pot_aim(at, [0, 1], [21, 21], target, 2.0)
     assert nominal[0] == nominal[1] and len({*own, nominal[0]}) == 3
     for k in range(2):
-        physics = many.tables.physics_of(k)
-        aim = sn.planning.pot_aim(at, [k], [21], target[:1], 2.0, physics=physics)[0]
+        planner = Planner(sn.Options(physics=many.tables.physics_of(k)))
+        aim = planner.pot_aim(at, [k], [21], target[:1], 2.0)[0]
         assert abs(aim - own[k]) < 1e-12
 
 

@@ -9,16 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import planning
 from snooker_env.benchmark import count_shots
-from snooker_env.planning import (
-    FrameJudge,
-    Planner,
-    Position,
-    Positions,
-    Search,
-    Strokes,
-    VisitJudge,
-    pot_aim,
-)
+from snooker_env.planning import FrameJudge, Planner, Position, Positions, Search, Strokes, VisitJudge
 from tests.planning.test_position import FULL
 from tests.refusals import refuse_each, refused
 
@@ -38,7 +29,7 @@ club(strokes=[[2.0, 0.0, NAN, 0.0, 0.0]], keys=[1]) | strokes[0], top | nan | mu
 club(strokes=[[2.0, 0.6, 0.0, 0.0, 0.0]], keys=[1]) | strokes[0], side | 0.6 | must
 club(strokes=[[2.0, 0.0, 0.0, INF, 0.0]], keys=[1]) | strokes[0], aim | inf | must
 club(strokes=[[2.0, 0.0, 0.0, 0.0, -0.1]], keys=[1]) | strokes[0], elevation | -0.1 | must
-play(AT, [?], STROKE) | rows[0] | ? | must be in [0, 1) | 1; -1
+play(AT, [?], STROKE) | rows[0] | ? | must be an integer in [0, 0] | 1; -1
 play(AT, [0.0], STROKE) | rows | float64 array | must
 play(AT, [[0]], STROKE) | rows | int64 array of shape (1, 1) | must
 play(AT, [0, 0], STROKE) | actions | array of shape (1, 4) | must
@@ -86,11 +77,6 @@ aim(strokes=[1.0, 2.0]) | strokes | array | must
 aim(strokes=[[2.3, 0.6, 0.0, 0.0, 0.0]]) | strokes[0], side | 0.6 | must
 aim(strokes=[[2.3, 0.0, 0.0, 0.0, 2.0]]) | strokes[0], elevation | 2.0 | must
 aim(ghosts=[[NAN, 0.0]]) | ghosts[0, 0] | nan | must
-aim(physics="moon") | physics | 'moon' | must
-aim(fidelity="coarse") | fidelity | 'coarse' | must
-obstructions(AT, [2], [(0.0, 0.0)], [(1.0, 0.0)]) | rows[0] | 2 | must
-obstructions(AT, [0], [(0.0, 0.0)], [1.0, 0.0]) | ends | array of shape | must
-obstructions(AT, [0], [(0.0, 0.0)], [(1.0, 0.0)], ignore=[22]) | ignore | 22 | must
 pots(AT, most=0) | most | 0 | must
 VisitJudge({}, threads=0) | threads | 0 | must
 VisitJudge(3) | env_or_options | a int | must be an environment
@@ -116,31 +102,19 @@ def test_what_cannot_be_planned_is_refused():
 
     pot = {"positions": Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)]), "rows": [0], "balls": [1]}
     pot |= {"targets": [(0.8, 0.8)], "strokes": 2.3}
-    assert pot_aim(**pot).shape == (1,)
-    judge, frames = (
-        VisitJudge({}, threads=1),
-        FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some))),
-    )
-    names = (
-        vars(planning)
-        | globals()
-        | {
-            "NAN": np.nan,
-            "INF": np.inf,
-            "CARTPOLE": gymnasium.make("CartPole-v1"),
-            "MANY": Positions.of([AT] * 4),
-        }
-    )
+    assert SILENT.pot_aim(**pot).shape == (1,)
+    judge, frames = VisitJudge({}, threads=1), FrameJudge({"task": "frame"}, lambda some: np.zeros(len(some)))
+    names = vars(planning) | globals() | {"NAN": np.nan, "INF": np.inf}
+    names |= {"CARTPOLE": gymnasium.make("CartPole-v1"), "MANY": Positions.of([AT] * 4)}
     names |= {"JUDGE": judge, "FRAMES": frames, "spoilt": spoilt, "row": row, "play": SILENT.play}
     frame = sn.SnookerEnv(task="frame")
     frame.reset(seed=1)
     names |= {"FRAME": Positions.of(frame)}
     names |= {"club": lambda **passed: CLUB.play_strokes(AT, [0], **passed)}
     names |= {"chosen": lambda choice: CHOICES.play(AT, [0], choice)}
-    names |= {
-        "action": lambda one, **options: Strokes([one]).actions(sn.Options(**options), Positions.of(AT))
-    }
-    names |= {"aim": lambda **changes: pot_aim(**pot | changes)}
+    at = Positions.of(AT)
+    names |= {"action": lambda one, **options: Strokes([one]).actions(sn.Options(**options), at)}
+    names |= {"aim": lambda **changes: SILENT.pot_aim(**pot | changes)}
     before = count_shots()
     refuse_each(PLANNED, names)
     assert count_shots() == before

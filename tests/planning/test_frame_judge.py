@@ -7,19 +7,11 @@ from snooker_env.benchmark import count_shots
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
 from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of
-from snooker_env.planning.frame_judge import KEPT, PLANS, SURE_OF
+from snooker_env.planning.judges import KEPT, PLANS, SURE_OF
 from snooker_env.planning.proposals import EDGE, safeties
 from snooker_env.planning.search import BUDGET
 from snooker_env.planning.trials import turn_to_striker
-from snooker_env.planning.worth import (
-    NARROWEST,
-    WIDEST,
-    Chance,
-    apply_decision,
-    decide,
-    lead_of,
-    left_of,
-)
+from snooker_env.planning.worth import NARROWEST, WIDEST, Chance, apply_decision, decide, lead_of, left_of
 from snooker_env.planning.worth import SPREAD as MIDDLE
 from snooker_env.players.weights import learned_worth
 from snooker_env.tasks import LEVELS

@@ -8,19 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game import SPOTS, BallOn
-from snooker_env.game.frame_columns import (
-    CHOICE,
-    FRAMES_0,
-    FRAMES_1,
-    FREE_BALL,
-    LOT,
-    MISS_CALLED,
-    PHASE,
-    RESPOTTED_BLACK,
-    SCORE_0,
-    SCORE_1,
-    STRIKER,
-)
+from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position, Positions
 from tests.refusals import refused
 
@@ -92,9 +80,15 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     env = sn.SnookerVectorEnv(3, task="match", frames=5, miss="clear_path")
     env.reset(seed=0)
     game, saved = env.tables.game, env.tables.layouts_before
-    game[:, [STRIKER, SCORE_0, SCORE_1, FRAMES_0, FRAMES_1]] = (0, 20, 7, 1, 2)
-    game[1, [STRIKER, FREE_BALL, PHASE, MISS_CALLED]] = (1, 1, CHOICE, 1)
-    game[2, [PHASE, RESPOTTED_BLACK]] = LOT, 1
+    sides = columns.SCORE_0, columns.SCORE_1, columns.FRAMES_0, columns.FRAMES_1
+    game[:, [columns.STRIKER, *sides]] = (0, 20, 7, 1, 2)
+    game[1, [columns.STRIKER, columns.FREE_BALL, columns.PHASE, columns.MISS_CALLED]] = (
+        1,
+        1,
+        columns.CHOICE,
+        1,
+    )
+    game[2, [columns.PHASE, columns.RESPOTTED_BLACK]] = columns.LOT, 1
     saved.positions[1, 0] = (0.1, 0.2)
     at = Positions.of(env)
     assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
@@ -103,8 +97,8 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
     assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
     assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any()
-    assert not at.game[:, STRIKER].any()
-    assert game[1, STRIKER] == 1  # the environment's own rows stay as they are
+    assert not at.game[:, columns.STRIKER].any()
+    assert game[1, columns.STRIKER] == 1  # the environment's own rows stay as they are
     part = at[[1]]
     assert part.free_ball.all() and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
     assert part.copy().saved.on_table.shape == (1, 22)

@@ -19,9 +19,9 @@ from snooker_env.planning import (
     pots,
     prospects_of,
 )
+from snooker_env.planning.judges import FOUL, LEFT, schedule
 from snooker_env.planning.search import PRIOR
 from snooker_env.planning.sobol import normal_points
-from snooker_env.planning.visit_judge import FOUL, LEFT, schedule
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.options import Options
 from tests.positions import tables
@@ -182,7 +182,7 @@ def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     at = Positions(*(np.concatenate([getattr(one, name) for one in parts]) for name in names))
     seeds = np.arange(len(at)) + 70
     seen = pots(at).ball[:, 0] >= 0
-    assert (~seen & clear_paths(at).any_part).sum() > 0 and (~seen & ~clear_paths(at).any_part).sum() > 0
+    assert (~seen & clear_paths(at)).sum() > 0 and (~seen & ~clear_paths(at)).sum() > 0
     assert seen.any()
     order = np.random.default_rng(0).permutation(np.tile(np.arange(len(at)), 4))
     whole = search(60, threads=2).rank(at[order], seeds[order])
@@ -194,7 +194,7 @@ def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
 @pytest.mark.parametrize(("noise", "budget"), [("none", 30), ("professional", 120)])
 def test_a_fair_stroke_is_found_where_the_balls_on_are_hidden(noise, budget):
     at = some(50, layout="snookered", seed=9)
-    assert clear_paths(at).any_part.mean() < 0.5
+    assert clear_paths(at).mean() < 0.5
     ranked = search(budget, {"noise": noise, "fidelity": "fast"}).rank(at, np.arange(50))
     played = Planner({"fidelity": "fast"}, threads=1).play_strokes(at, np.arange(50), first(ranked))
     assert (played.penalty == 0).mean() >= 0.98

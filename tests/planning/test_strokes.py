@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pot_aim, pots
+from snooker_env.planning import Planner, Position, Positions, Strokes, action_masks, pots
 from snooker_env.planning.strokes import decode
 from snooker_env.players import VISITS
 from snooker_env.tasks.frames import sayings
@@ -85,7 +85,9 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     planner, straight = Planner(env), np.arctan2(*(direct.ghost[:, 0] - at.positions[:, 0])[:, ::-1].T)
     spun = np.tile([2.9, 0.3, 0.0, 0.0, 0.0], (60, 1))
     solved = planner.pot_aim(at, n, direct.ball[:, 0], targets, spun)
-    assert np.array_equal(solved, pot_aim(at, n, direct.ball[:, 0], targets, spun, ghosts=direct.ghost[:, 0]))
+    assert np.array_equal(
+        solved, planner.pot_aim(at, n, direct.ball[:, 0], targets, spun, ghosts=direct.ghost[:, 0])
+    )
     made = []
     for spun[:, 3] in solved, straight:
         made.append((planner.play_strokes(at, n, spun).points > 0).mean())

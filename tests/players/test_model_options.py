@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env import watch
 from snooker_env.benchmark import HELD_OUT_SEED
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.players import model_options
+from snooker_env.players import saved_models
 
 TARGET = {"aim": "target"}
 WORDS = ["--trust", "--options", "aim=target"]
@@ -27,7 +27,7 @@ def model(tmp_path_factory):
 @pytest.fixture
 def nothing_said(monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
-    monkeypatch.setattr(model_options, "_SAID", [])
+    monkeypatch.setattr(saved_models, "_SAID", [])
 
 
 def tables(n=3):

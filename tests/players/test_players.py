@@ -173,11 +173,8 @@ def test_the_planner_plays_in_the_package_alone(tmp_path):
     copy_of_package(tmp_path)
     code = f"import sys; sys.argv[1:] = [{str(tmp_path)!r}]\n{ALONE}"
     out = python(code, at=tmp_path)[0].strip().splitlines()
-    assert (
-        out[0]
-        == "['random', 'ghost_ball', 'best_pot', 'search', 'planner', 'tactician', 'stroke_value', 'strokes']"
-        and "m/s" in "".join(out)
-    )
+    names = "'random', 'ghost_ball', 'best_pot', 'search', 'planner', 'tactician', 'stroke_value', 'strokes'"
+    assert out[0] == f"[{names}]" and "m/s" in "".join(out)
     assert out[-1] == "True True"
 
 
@@ -190,9 +187,8 @@ def test_a_player_of_choices_says_what_its_scores_lack():
         pass
 
     at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    with pytest.raises(
-        ValueError, match=r"Short\.scores = array of shape \(1, 5\): must have shape \(1, 540\)"
-    ):
+    wrong = r"Short\.scores = array of shape \(1, 5\): must have shape \(1, 540\)"
+    with pytest.raises(ValueError, match=wrong):
         Short().at({}).play(at, [1])
     with pytest.raises(NotImplementedError, match=r"Missing must have scores\(at, seeds\)"):
         Missing().at({}).rank(at, [1])
@@ -200,8 +196,7 @@ def test_a_player_of_choices_says_what_its_scores_lack():
 
 def test_ghost_ball_strikes_no_more_softly_than_anybody_can():
     """A red 0.3 mm away, where all but a stun shot would go in-off: as found in frames of ``examples.self_play``."""
-    position = sn.Position(
-        cue=(-0.86, 0.0189), reds=[(-0.82954, 0.06201), (-0.77107, 0.03743)], black=(0.0, 1.4605)
-    )
+    reds = [(-0.82954, 0.06201), (-0.77107, 0.03743)]
+    position = sn.Position(cue=(-0.86, 0.0189), reds=reds, black=(0.0, 1.4605))
     strokes = sn.player("ghost_ball").at({}).play(sn.Positions.of([position] * 20), range(20))
     assert strokes.values[:, 0].tolist() == [0.2] * 20

@@ -8,8 +8,8 @@ from snooker_env.benchmark import count_shots
 from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
-from snooker_env.planning.learned.learned_value import LearnedValue
-from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.learned.learned_worth import LearnedValue
+from snooker_env.planning.learned.stroke_policy import PolicyProposals
 from snooker_env.players import FRAMES, weights
 from snooker_env.players.degenerate import SILLY
 from snooker_env.players.search_player import BUDGET, KINDS

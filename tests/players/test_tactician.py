@@ -8,12 +8,13 @@ from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Position
 from snooker_env.planning.worth import apply_decision, last_of, lead_of, left_of
 from snooker_env.players import FRAMES
-from snooker_env.players.tactician import Tactician
+from snooker_env.players.search_player import Tactician
 from snooker_env.tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from tests.planning.test_frame_judge import frame_of
 from tests.planning.test_trials import GAME, frames_in_play, positions_of
 
 OPTIONS = GAME | {"noise": "club", "cue": "real", "says": ["decision"]}
+PINK_BALL = Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink")
 
 
 def test_it_takes_a_budget_and_no_model():
@@ -50,20 +51,12 @@ def test_the_lot_is_decided_by_the_worth_of_the_black():
 
 
 def test_a_lost_frame_is_conceded_only_where_it_may_be():
-    lost = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(0, 90))
-    alive = frame_of(
-        Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(80, 90)
-    )
-    for says, at, wanted in (
-        (True, lost, CONCEDES),
-        (False, lost, SAYS_NOTHING),
-        (True, alive, SAYS_NOTHING),
-    ):
+    lost = frame_of(PINK_BALL, scores=(0, 90))
+    alive = frame_of(PINK_BALL, scores=(80, 90))
+    each = (True, lost, CONCEDES), (False, lost, SAYS_NOTHING), (True, alive, SAYS_NOTHING)
+    for says, at, wanted in each:
         player = sn.player("tactician_30").at(OPTIONS | {"says": ["decision"] + ["concede"] * says})
         assert player.play(at, [1]).declare.tolist() == [wanted]
-
-
-PINK_BALL = Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink")
 
 
 def test_the_chance_to_win_is_that_of_the_lead_to_come():
@@ -72,9 +65,8 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
     at = positions_of(frames_in_play(12, OPTIONS, strokes=6, seed=11))
     before = at.copy()
     chances = player.chance_to_win(at)
-    assert (
-        chances.shape == (12,) and ((chances >= 0) & (chances <= 1)).all() and len(set(chances.tolist())) > 6
-    )
+    assert chances.shape == (12,) and len(set(chances.tolist())) > 6
+    assert ((chances >= 0) & (chances <= 1)).all()
     going = np.flatnonzero(~at.over)
     law, worth = player.judge.chance, player.judge.worth
     some = at[going]
@@ -84,9 +76,8 @@ def test_the_chance_to_win_is_that_of_the_lead_to_come():
         assert player.chance_to_win(at[[k]])[0] == pytest.approx(chances[k], abs=1e-6)
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(at, name), getattr(before, name))
-    leads = [
-        player.chance_to_win(frame_of(PINK_BALL, scores=(60 + lead, 60)))[0] for lead in (-90, -8, 0, 8, 90)
-    ]
+    level = [frame_of(PINK_BALL, scores=(60 + lead, 60)) for lead in (-90, -8, 0, 8, 90)]
+    leads = [player.chance_to_win(one)[0] for one in level]
     assert leads == sorted(leads) and leads[0] < 0.01 and leads[-1] > 0.99
     assert sn.player("tactician_500").at(OPTIONS).chance_to_win(at).tolist() == chances.tolist()
 
@@ -131,7 +122,7 @@ def test_what_time_decides_is_certain():
 
 def test_who_needs_snookers_plays_for_them():
     """14 behind with pink and black left: the pink, however easy, would lose the frame."""
-    at = frame_of(Position(cue=(0.1, 0.3), pink=(0.0, 0.7), black=(0.0, 1.4605), on="pink"), scores=(60, 74))
+    at = frame_of(PINK_BALL, scores=(60, 74))
     for name in ("tactician", "stroke_value"):
         player = sn.player(name).at(OPTIONS | {"noise": "professional", "miss": "clear_path"})
         tried = player.search.rank(at[np.zeros(10, int)], np.arange(10))
@@ -171,18 +162,15 @@ def test_the_chance_after_a_foul_is_that_of_the_best_decision():
     easy = Position(cue=(0.3, 1.0), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="red")
     at = frame_of(easy, scores=(4, 0))
     at.game[:, columns.PHASE] = columns.CHOICE
-    play, again = (
-        player.chance_to_win(apply_decision(at, what))[0] for what in (columns.PLAY, columns.PLAY_AGAIN)
-    )
+    both = columns.PLAY, columns.PLAY_AGAIN
+    play, again = (player.chance_to_win(apply_decision(at, what))[0] for what in both)
     assert player.chance_to_win(at)[0] == play > 0.6 > 1.0 - again
     hard = Position(cue=(0.0, 1.70), reds=[(0.0, -1.70)], black=(0.0, 1.4605), blue=(0.0, 1.63), on="red")
     snookered = frame_of(hard, scores=(4, 0))
     snookered.game[:, columns.PHASE] = columns.CHOICE
     play, again = (player.chance_to_win(apply_decision(snookered, what))[0] for what in (0, 1))
-    assert (
-        player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-12)
-        and 1.0 - again > 0.6 > play
-    )
+    assert player.chance_to_win(snookered)[0] == pytest.approx(1.0 - again, abs=1e-12)
+    assert 1.0 - again > 0.6 > play
 
 
 def test_nobody_wins_a_visit_and_a_player_without_a_law_says_nothing():

@@ -66,7 +66,7 @@ def test_who_saved_a_model_is_read_from_it(tmp_path, name):
     getattr(library, name)("MlpPolicy", SnookerEnv(), device="cpu").save(tmp_path / "model.zip")
     found = SavedModel.of(tmp_path / "model.zip", "opponent")
     assert issubclass(getattr(library, name), getattr(library, found.algorithm[1]))  # DDPG is a TD3
-    assert found.network(True, "") is not None
+    assert found.network(True) is not None
 
 
 @pytest.mark.parametrize(("task", "name"), [("visit", "PPO"), ("frame", "SAC")])

@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, CUE
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Planner, Position, Positions, pot_aim, pots, prospects_of
+from snooker_env.planning import Planner, Position, Positions, pots, prospects_of
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.discrete_actions import SIDES, SPEEDS, TOPS, choice_of
 from snooker_env.tasks.noise import Spread
@@ -26,7 +26,7 @@ def stroke_of(a, at, direct, cue):
     pick = next(k for k in range(many) if abs(a[3]) < (k + 1) / many or k == many - 1)
     to, ghost = POCKET_AIMS[direct.pocket[:, pick], :2], direct.ghost[:, pick]
     played = [[speed, side, top, 0.0, elevation]]
-    (aim,) = pot_aim(at, [0], direct.ball[:, pick], to, played, ghosts=ghost, cue=cue)
+    (aim,) = Planner({"cue": cue}).pot_aim(at, [0], direct.ball[:, pick], to, played, ghosts=ghost)
     return [speed, side, top, aim, elevation], pick
 
 

@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.cue_room import in_room_over
-from snooker_env.planning import Planner, Position, Positions, pot_aim, pots, prospects_of
+from snooker_env.planning import Planner, Position, Positions, pots, prospects_of
 from snooker_env.planning.aims import Dynamics, law_of
 from snooker_env.tasks import LEVELS, cue_ball_path
 from snooker_env.tasks.noise import TWICE, Noise, Spread
@@ -35,7 +35,7 @@ def wanted_of(at, options, pot, index):
     speed, top = SPEEDS[along // 3], TOPS[along % 3]
     ball, pocket, ghost = pot.ball[:, line], pot.pocket[:, line], pot.ghost[:, line]
     to, stroke = POCKET_AIMS[pocket, :2], np.array([[speed, 0.0, top, 0.0, 0.0]])
-    stroke[0, 3] = pot_aim(at, [0], ball, to, stroke, ghosts=ghost, cue=options.cue)[0]
+    stroke[0, 3] = Planner({"cue": options.cue}).pot_aim(at, [0], ball, to, stroke, ghosts=ghost)[0]
     rules = options.rules
     room = at.positions[0], at.on_table[0], np.array(rules.rails), rules.physics.R, rules.physics.max_offset
     played, _, _, _ = in_room_over(tuple(stroke[0].tolist()), *room, rules.physics.end_mass_ratio)
@@ -133,7 +133,8 @@ def test_it_is_the_stroke_that_is_played():
         line, along = min(choice // ALONG, many - 1), choice % ALONG
         stroke = np.array([[SPEEDS[along // 3], 0.0, TOPS[along % 3], 0.0, 0.0]])
         to = POCKET_AIMS[pot.pocket[:, line], :2]
-        (aim,) = pot_aim(at, [k], pot.ball[:, line], to, stroke, ghosts=pot.ghost[:, line], cue="real")
+        ball, ghost = pot.ball[:, line], pot.ghost[:, line]
+        (aim,) = Planner({"cue": "real"}).pot_aim(at, [k], ball, to, stroke, ghosts=ghost)
         assert values[k, [0, 1, 2, 4]] == pytest.approx(stroke[0, [0, 1, 2, 4]], abs=1e-12)
         assert abs(np.exp(1j * values[k, 3]) - np.exp(1j * aim)) < 1e-9
         played += choice // ALONG >= many

@@ -1,20 +1,21 @@
-"""How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in
-a fixed order of sums: a row's result depends on that row alone. The matrix products of NumPy and torch wake a
-thread for each core, which wait for each other longer than they compute."""
+"""How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in a fixed order
+of sums: a row's result depends on that row alone. NumPy and torch wake a thread for each core, which costs more."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..._lib.jit import entry
 from ..._lib.types import Singles
 
+Weights: TypeAlias = Sequence[tuple[Singles, Singles]]  # (out, in) and (out,) of each layer
+
 
 @entry(what="the layers of networks", seconds=2)
 def linear(rows, weight, bias, out):
-    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + ..., rounded after
-    each. All float32 and contiguous; two rows, four terms at a time: the sums stay in registers."""
+    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,), float32: bias + rows[0] weight[0] + ..., rounded after each. Two
+    rows, four terms at a time: the sums stay in registers."""
     n, a = rows.shape
     b = weight.shape[1]
     spare = np.empty(b, np.float32)
@@ -55,15 +56,15 @@ ACTIVATIONS: dict[str, Any] = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu
 
 
 class Layers:
-    """A multilayer perceptron of layers (out, in) and (out,), copied, with "tanh" or "relu" between them."""
+    """A multilayer perceptron, whose weights are copied, with "tanh" or "relu" between its layers."""
 
-    def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
+    def __init__(self, weights: Weights, activation: str):
         turned = [np.array(weight.T, np.float32, order="C") for weight, _ in weights]
         self._layers = [(w, np.array(bias, np.float32)) for w, (_, bias) in zip(turned, weights, strict=True)]
         self._between = activation  # by name: a lambda cannot be pickled
 
     @property
-    def weights(self) -> list[tuple[Any, Any]]:
+    def weights(self) -> Weights:
         """(out, in) and (out,) of each layer, as they were given: float32."""
         return [(np.ascontiguousarray(weight.T), bias) for weight, bias in self._layers]
 

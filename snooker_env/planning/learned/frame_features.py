@@ -1,6 +1,5 @@
-"""What does a learned worth of frames see of a position? All that a learned value sees of the visit
-(``value_features``), and what safety is about: which balls on can be struck at all, how near the nearest reds
-lie and how much of each is seen. The table is read mirrored so that the cue ball is on the right."""
+"""What does a learned worth of frames see of a position? All that a learned value sees of the visit, and what safety is about:
+which balls on can be struck at all, how near the nearest reds lie and how much of each is seen."""
 
 from math import log, sqrt
 
@@ -14,7 +13,7 @@ from ...geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ...tasks.noise import Spread
 from ...tasks.windows import HIGH, LOW, MOST_EDGES, half_width, open_part, open_windows
 from ..positions import Positions
-from ..prospects import in_parts
+from ..pot_geometry import in_parts
 from ..worth import NARROWEST, SPREAD, WIDEST
 from .value_features import SHARED as SHARED_OF_VISITS
 from .value_features import SIZE as VISIT_SIZE
@@ -23,10 +22,8 @@ from .value_features import value_features
 NEAREST = 3  # reds that are described one by one
 RED_ENTRIES, SHARED = 5, 18
 SIZE = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + SHARED
-LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10
-"""The entry that holds the chance of the likeliest direct pot."""
-HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6
-"""The entry that is 1 where no ball on can be struck along a straight line: the striker is snookered."""
+LIKELY = VISIT_SIZE - SHARED_OF_VISITS + 10  # the entry that holds the chance of the likeliest direct pot
+HIDDEN = VISIT_SIZE + NEAREST * RED_ENTRIES + 6 + 6  # the entry that is 1 where the striker is snookered
 
 
 @entry(what="the features of frames", seconds=4)

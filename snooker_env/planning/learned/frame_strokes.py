@@ -1,39 +1,37 @@
-"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is
-likely: of each it predicts where the cue ball and the first ball that it meets come to rest (``cue_ball_path``), and a
-learned worth says what such a position is worth to the other player. A small network corrects what both kinds seem to be
-worth: the points that the striker scores from there on, less the other's. ``train.py --agent stroke_value`` trains it."""
+"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is likely: where
+both balls come to rest is predicted (``cue_ball_path``), and a learned worth says what that brings the other player. A network
+corrects what both kinds seem to be worth (``train.py --agent stroke_value``)."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..._lib.types import Bools, Floats, Integers, Ints
+from ..._lib.types import Bools, Floats, Integers, Ints, Singles
 from ...game import frame_columns as columns
-from ...game.balls import BLACK, PINK, VALUES
+from ...game.balls import BLACK, N_BALLS, PINK, VALUES
 from ...tasks import cue_ball_path as path
 from ...tasks.noise import Spread
 from ...tasks.options import Rules
-from ..aims import Dynamics
-from ..frame_judge import EASY
+from ..aims import Dynamics, law_of
+from ..judges import EASY
 from ..positions import Positions, PositionsLike, check_has_stroke, seeds_of
+from ..pot_geometry import in_parts
 from ..proposals import safeties
 from ..search import Ranked
+from ..sobol import normal_points
 from ..stroke_columns import COLUMNS, SIDE, SPEED, TOP
 from ..strokes import Strokes
 from ..worth import SPREAD, Chance, breaks_off, lead_of, left_of, pass_after_miss
-from .dense_layers import Layers
-from .foresight import FOUL as FOUL
-from .foresight import POTTED as POTTED
-from .foresight import SAMPLES as SAMPLES
-from .foresight import Foresight
+from .dense_layers import Layers, Weights
 from .learned_worth import LearnedWorth
 from .stroke_value import LEARNED, LOOKS, POINTS, StrokeValue
 from .stroke_value import SIZE as POT_SIZE
 
-SAFETIES = 60
-"""Safeties that are looked at."""
+SAMPLES = 4  # errors under which each safety is predicted; the first is none
+FOUL = 8.0  # what a predicted foul costs beside what the balls as they lie bring the other [points]
+POTTED = 0.5  # of the safeties that are predicted to pot a ball that is on, about so many do
+_SEED = 7  # of the errors, which are the same for all
+SAFETIES = 60  # those that are looked at
 STROKES = LOOKS + SAFETIES
 SHARED, SAFE_SIZE = 5, 24
 SIZE = SHARED + POT_SIZE + SAFE_SIZE
@@ -43,30 +41,74 @@ FOULS = SHARED + POT_SIZE + 4  # the column of the share of errors under which a
 _CHANCE = 2  # the column of what ``stroke_value`` sees that is the pot's chance
 
 
-class Looked(NamedTuple):
-    """The strokes of n positions that are looked at, pots before safeties.
+class Foreseen(NamedTuple):
+    """Of m strokes under k errors: worth [points], (m, k); what is seen of the two balls, (m, k, 2, SEEN); fates, (m, k)."""
 
-    ``strokes`` (n, STROKES, 5); ``there`` (n, STROKES), whether there is such a stroke; ``seen`` float32 (n, STROKES,
-    SIZE)."""
+    gains: Floats
+    seen: Floats
+    foul: Bools
+    potted: Bools
+    missed: Bools
+
+
+class Foresight:
+    """Predicts strokes without a pot under the errors of ``rules``, and judges what they leave by ``worth``."""
+
+    def __init__(self, rules: Rules, dynamics: Dynamics, worth: LearnedWorth):
+        self.worth: LearnedWorth = worth
+        self.dynamics: Dynamics = dynamics
+        self._noise = rules.noise.pack(dynamics.physics.R, real=len(dynamics.rails) > 0)
+        self._errors = np.ascontiguousarray(normal_points(SAMPLES, _SEED)[:, :COLUMNS])
+        self._errors[0] = 0.0
+
+    def promise(self, at: Positions, rows: Ints, strokes: Floats, samples: int) -> Floats:
+        """What strokes (m, 5) in ``at[rows]`` promise on average of ``samples`` errors: (m,) [points]."""
+        missed, goes_on = self.worth(pass_after_miss(at)), self.worth(at)
+        balls = missed.astype(np.float64), goes_on.astype(np.float64)
+        return self.foresee(at, rows, strokes, *balls, samples).gains.mean(axis=1)
+
+    def foresee(
+        self, at: Positions, rows: Ints, strokes: Floats, missed: Floats, goes_on: Floats, samples: int
+    ) -> Foreseen:
+        """What strokes lead to, where the other and the striker make ``missed`` and ``goes_on`` (n,) of the balls as they lie."""
+        m, k, errors = len(rows), samples, self._errors[:samples]
+        balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
+        out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
+        met, legal = np.empty(m * k, np.int64), np.empty(m * k, np.bool_)
+
+        def predict(part: slice) -> None:
+            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part])
+            left = places[all_of], met[all_of], legal[all_of]
+            path.predict_contacts(balls, *some, errors, self._noise, law, out[all_of], left)
+
+        in_parts(m, self.worth.value.threads, predict)
+        of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
+        foul, potted = ~legal | lost[:, 0], legal & lost[:, 1] & ~lost[:, 0]
+        gains = -missed[of]
+        gains[potted] += POTTED * (VALUES[met] + goes_on[of] + missed[of])[potted]
+        gains[foul] = np.minimum(gains[foul], 0.0) - FOUL
+        rest = np.flatnonzero(~foul & ~potted)
+        left = pass_after_miss(at[of[rest]])
+        left.positions[:] = places[rest]
+        gains[rest] = -self.worth(left)
+        fates = (one.reshape(m, k) for one in (foul, potted, met == 0))
+        return Foreseen(gains.reshape(m, k), out.reshape(m, k, 2, path.SEEN), *fates)
+
+
+class Looked(NamedTuple):
+    """The strokes of n positions that are looked at, pots first; whether each is there, and what is seen: (n, STROKES, ...)."""
 
     strokes: Floats
     there: Bools
-    seen: NDArray[np.float32]
+    seen: Singles
 
 
 class FrameStrokes:
     """Ranks strokes of frames without a simulated shot; ``layers``: of the network, empty before it has learned."""
 
-    chance: Chance | None = None
-    """It compares points: no law of the chance to win."""
+    chance: Chance | None = None  # it compares points: no law of the chance to win
 
-    def __init__(
-        self,
-        rules: Rules,
-        values: StrokeValue,
-        worth: LearnedWorth,
-        layers: Sequence[tuple[NDArray, NDArray]],
-    ):
+    def __init__(self, rules: Rules, values: StrokeValue, worth: LearnedWorth, layers: Weights):
         self.rules: Rules = rules
         self.values: StrokeValue = values
         self.worth: LearnedWorth = worth
@@ -76,8 +118,7 @@ class FrameStrokes:
         self._foresight = Foresight(rules, self.dynamics, worth)
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
-        """Rank strokes in n positions of frames by their points, as ``Search.rank``: none met a noise sample. None
-        before a break-off, and where neither a pot nor a ball on is seen."""
+        """As ``Search.rank``, by points; without strokes before a break-off, and where neither a pot nor a ball on is seen."""
         at = Positions.of(positions).known_to(self.rules)
         keys, rows = seeds_of(seeds, len(at)), np.flatnonzero(~breaks_off(at))
         check_has_stroke(at.as_visits(), np.arange(len(at)), self.rules.table, self.rules.physics.R)
@@ -93,15 +134,15 @@ class FrameStrokes:
             ranked[k] = Ranked(Strokes(strokes[j, best]), points, points, np.zeros_like(best), kinds)
         return ranked
 
-    def _sensible(self, at: Positions, there: Bools, seen: NDArray[np.float32]) -> Bools:
-        """Which strokes do not foul on purpose, nor lose the frame by potting the pink, where there are others: (n, STROKES)."""
+    def _sensible(self, at: Positions, there: Bools, seen: Singles) -> Bools:
+        """Which strokes neither foul on purpose nor lose the frame by potting the pink, where there are others."""
         bad = there & (seen[..., FOULS] > 0.5)
         two = at.game[:, columns.ON_TABLE] == (1 << PINK) + (1 << BLACK)
         lost = two & (at.ball_on == VALUES[PINK]) & (lead_of(at) + left_of(at) < 0.0)
         bad[:, :LOOKS] |= there[:, :LOOKS] & lost[:, None]
         return ~bad | ~(there & ~bad).any(axis=1, keepdims=True)
 
-    def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+    def scores(self, seen: Singles) -> Singles:
         """What the strokes seen (n, m, SIZE) are worth [points]: float32 (n, m)."""
         more = 0.0 if self._layers is None else self._layers(seen.reshape(-1, SIZE)).reshape(seen.shape[:-1])
         return POINTS * (seen[..., 0] + more)
@@ -112,10 +153,7 @@ class FrameStrokes:
         strokes, there = np.zeros((n, STROKES, COLUMNS)), np.zeros((n, STROKES), np.bool_)
         seen = np.zeros((n, STROKES, SIZE), np.float32)
         # what the other and the striker make of the balls as they lie
-        missed, goes_on = (
-            self.worth(pass_after_miss(at)).astype(np.float64),
-            self.worth(at).astype(np.float64),
-        )
+        missed, goes_on = (self.worth(one).astype(np.float64) for one in (pass_after_miss(at), at))
         found, hard = self.values.candidates(visits, LOOKS, seeds), np.ones(n, np.bool_)
         rows, pots, kinds = found.rows, seen[:, :LOOKS], seen[:, LOOKS:]
         strokes[rows, :LOOKS], there[rows, :LOOKS] = found.strokes, True
@@ -140,17 +178,14 @@ class FrameStrokes:
     def _predict(
         self, at: Positions, rows: Ints, strokes: Floats, missed: Floats, goes_on: Floats
     ) -> tuple[Floats, Floats]:
-        """What safeties (m, 5) in ``at[rows]`` seem to be worth, in units of ``POINTS``, (m,), and what is predicted of
-        them, (m, SAFE_SIZE). ``missed``, ``goes_on`` (n,): what the other and the striker make of the balls of ``at``."""
-        told = self._foresight.foresee(at, rows, strokes, missed, goes_on)
+        """What safeties (m, 5) seem to be worth in units of ``POINTS``, and what is predicted: (m, SAFE_SIZE)."""
+        told = self._foresight.foresee(at, rows, strokes, missed, goes_on, SAMPLES)
         m, gains, seen = len(rows), told.gains / 20.0, told.seen
         first, mean, cue = seen[:, 0], seen.mean(axis=1), seen[:, :, 0]
         columns_seen = [gains[:, 0], gains.min(axis=1), gains.max(axis=1), gains.std(axis=1)]
         columns_seen += [one.mean(axis=1) for one in (told.foul, told.potted, told.missed)]
-        columns_seen += [
-            first[:, 0, path.LOST],
-            np.full(m, np.log(np.clip(self.spread.core, *LEARNED) / SPREAD)),
-        ]
+        errs = np.log(np.clip(self.spread.core, *LEARNED) / SPREAD)
+        columns_seen += [first[:, 0, path.LOST], np.full(m, errs)]
         for ball in (0, 1):
             columns_seen += [
                 mean[:, ball, path.NOSES] / 3.0,

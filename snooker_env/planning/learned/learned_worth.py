@@ -1,38 +1,60 @@
-"""What is a position of a frame worth by learned networks? The points that its striker is expected to score from
-there on, less the other's: the learned value of the visit, and what a small network adds for all that comes after it.
-
-The value was learned from a hundred times as many shots, and tells apart what a stroke within a break leaves; the
-other network is about whose turn follows, and what safety is. ``agents.learn_worth`` trains it, for all levels of
-errors at once: the error of the cue ball's direction is one of its inputs."""
+"""What is a position worth by learned networks? In a visit V = P x U: the chance that the next stroke scores, which starts
+from the likeliest pot's chance by its width, times what the visit then brings: the mean of several small networks. In a frame
+that, and what another network adds for all that comes after the visit: the error of the cue ball's direction is one of its
+inputs. ``agents.learning.value_network`` and ``agents.learn_worth`` train them."""
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..._lib.types import Singles
+from ...tasks.noise import Spread
 from ..positions import Positions
-from ..prospects import in_parts
-from .dense_layers import Layers
+from ..pot_geometry import in_parts
+from .dense_layers import Layers, Weights
 from .frame_features import SIZE as FEATURES
 from .frame_features import frame_features
-from .learned_value import LearnedValue
+from .value_features import LOGIT, value_features
 from .value_features import SIZE as VISIT_SIZE
 
-POINTS = 40.0  # unit of the networks' results [points]
-SIZE = FEATURES + 1  # what the network sees: the features, then the value of the visit
+POINTS = 40.0  # unit of U, and of what the other network adds [points]
+SIZE = FEATURES + 1  # what that network sees: the features, then the value of the visit
+
+
+class LearnedValue:
+    """The value [points] of visits: called with n ``Positions``, it returns float32 (n,). ``members``: of each network."""
+
+    def __init__(self, members: Sequence[Weights], spread: Spread, threads: int = 1):
+        self._members = [Layers(member, "relu") for member in members]
+        self.spread: Spread = spread
+        self.threads: int = threads
+
+    def __call__(self, at: Positions) -> Singles:
+        return self.of(value_features(at, self.spread, self.threads))
+
+    def of(self, seen: Singles) -> Singles:
+        """The values of features (n, SIZE)."""
+        values = np.empty(len(seen), np.float32)
+        in_parts(len(seen), self.threads, lambda rows: self._write(seen[rows], values[rows]))
+        return values
+
+    def _write(self, seen: Singles, values: Singles) -> None:
+        values[:] = 0.0
+        for member in self._members:
+            p, u = member(seen).T
+            values += POINTS * np.logaddexp(0.0, u) / (1.0 + np.exp(-(seen[:, LOGIT] + p)))
+        values /= len(self._members)
 
 
 class LearnedWorth:
-    """A worth (``planning.worth``): float32 (n,) points for n ``Positions`` of frames as their strikers see them.
-    ``value``: of the visit; ``layers``: weight (out, in) and bias (out,) of each, or None: the value alone."""
+    """A worth (``planning.worth``): float32 (n,) points; ``layers``: of the other network, None: the value alone."""
 
-    def __init__(self, value: LearnedValue, layers: Sequence[tuple[NDArray, NDArray]] | None):
+    def __init__(self, value: LearnedValue, layers: Weights | None):
         self.value: LearnedValue = value
         self._layers = None if layers is None else Layers(layers, "relu")
 
-    def __call__(self, at: Positions) -> NDArray[np.float32]:
-        seen = self.features_of(at)
-        worths = np.empty(len(at), np.float32)
+    def __call__(self, at: Positions) -> Singles:
+        seen, worths = self.features_of(at), np.empty(len(at), np.float32)
 
         def fill(rows: slice) -> None:
             worths[rows] = worth_of(self._layers, seen[rows])
@@ -40,7 +62,7 @@ class LearnedWorth:
         in_parts(len(at), self.value.threads, fill)
         return worths
 
-    def features_of(self, at: Positions) -> NDArray[np.float32]:
+    def features_of(self, at: Positions) -> Singles:
         """What the network sees of n positions: float32 (n, SIZE)."""
         seen = np.empty((len(at), SIZE), np.float32)
         seen[:, :FEATURES] = frame_features(at, self.value.spread, self.value.threads)
@@ -48,7 +70,7 @@ class LearnedWorth:
         return seen
 
 
-def worth_of(layers: Layers | None, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+def worth_of(layers: Layers | None, seen: Singles) -> Singles:
     """The worths (n,) of what the network sees (n, SIZE)."""
     more = 0.0 if layers is None else layers(seen)[:, 0]
     return POINTS * (seen[:, -1] + more)

@@ -57,10 +57,8 @@ def _add_pots(observations, shown):
 
 
 def with_pots(observations: Singles) -> Singles:
-    """Flat observations (n, OBSERVATION_SIZE), then ``POT_ENTRIES`` of each of the four widest pots.
-
-    1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the
-    ball's value and place, the pocket's place: without them a small network makes a third of the pots."""
+    """Flat observations (n, OBSERVATION_SIZE), then of each of the four widest pots: 1, direction cue ball -> ghost ball (x, y),
+    sine and cosine of the cut, both distances, tolerance, the ball's value and place, the pocket's place."""
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
     return shown

@@ -1,16 +1,12 @@
-"""What is a stroke worth, without playing it? A policy proposes strokes at the pots; of each it predicts where it
-leaves the cue ball (``cue_ball_path``), under no error and under some, and a learned value says what such positions are worth.
-A small network weighs this against how sure the pot is: the points that the stroke, and the visit after it, bring.
-``train.py --agent stroke_value`` trains it."""
+"""What is a stroke worth, without playing it? A policy proposes strokes at the pots, where each leaves the cue ball is predicted
+(``cue_ball_path``), and a small network weighs the learned value of that against how sure the pot is."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..._lib.types import Floats, Ints
+from ..._lib.types import Floats, Ints, Singles
 from ...game.balls import N_BALLS, VALUES
 from ...game.frame_columns import BALL_ON, VISIT_COLUMNS
 from ...geometry import AIM_X, AIM_Y, IS_MIDDLE, POCKET_AIMS
@@ -19,56 +15,43 @@ from ...tasks.discrete_actions import STROKES
 from ...tasks.noise import Noise
 from ..aims import Dynamics, law_of
 from ..positions import Positions
-from ..pot_geometry import Pots, pots
+from ..pot_geometry import Pots, in_parts, pots
 from ..proposals import strokes_at
-from ..prospects import in_parts
 from ..sobol import normal_points
 from ..stroke_columns import AIM, COLUMNS, SIDE, SPEED, TOP
 from ..worth import SPREAD
-from .dense_layers import Layers
-from .learned_value import LearnedValue
-from .policy_proposals import PolicyProposals, draw_choices
-from .stroke_policy import StrokePolicy
+from .dense_layers import Layers, Weights
+from .learned_worth import LearnedValue
+from .stroke_policy import PolicyProposals, StrokePolicy, draw_choices
 
 SIZE = 33
 POINTS = 10.0  # unit of the network's results [points]
-LOOKS, SAMPLES = 60, 3
-"""Strokes that are looked at, and errors under which each is predicted; the first is none."""
+LOOKS, SAMPLES = 60, 3  # strokes that are looked at; errors under which each is predicted, the first is none
 LEARNED = 8.4e-4, 5e-3  # other errors of direction than it has learned from count as these [rad]
 _SEED = 7  # of the errors, which are the same for all
-_LEAST_SPEED = 0.03
-"""The errors of speed that are predicted are at least this: else all would come to the same place."""
+_LEAST_SPEED = 0.03  # the least error of speed that is predicted: else all would come to the same place
 
 
 class Candidates(NamedTuple):
-    """m strokes of each of n positions that have a pot, and what is seen of them.
-
-    ``rows`` (n,): the positions; ``strokes`` (n, m, 5); ``seen`` float32 (n, m, SIZE)."""
+    """m strokes (n, m, 5) of each of the n positions ``rows`` that have a pot, and what is seen of them (n, m, SIZE)."""
 
     rows: Ints
     strokes: Floats
-    seen: NDArray[np.float32]
+    seen: Singles
 
 
 class StrokeValue:
-    """Proposes strokes at pots and says what they are worth [points]; ``layers``: of the network, empty before it has
-    learned: then the policy's scores are all."""
+    """Proposes strokes at pots and says what they are worth; ``layers``: empty before it has learned, but for the policy."""
 
     def __init__(
-        self,
-        value: LearnedValue,
-        policy: StrokePolicy,
-        dynamics: Dynamics,
-        noise: Noise,
-        layers: Sequence[tuple[NDArray, NDArray]],
+        self, value: LearnedValue, policy: StrokePolicy, dynamics: Dynamics, noise: Noise, layers: Weights
     ):
         self.value: LearnedValue = value
         self.proposals: PolicyProposals = PolicyProposals(policy)
         self.dynamics: Dynamics = dynamics
         self._layers = Layers(layers, "relu") if layers else None
-        self._noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED)).pack(
-            dynamics.physics.R, real=len(dynamics.rails) > 0
-        )
+        noise = replace(noise, speed_rel=max(noise.speed_rel, _LEAST_SPEED))
+        self._noise = noise.pack(dynamics.physics.R, real=len(dynamics.rails) > 0)
         self._errors = np.ascontiguousarray(normal_points(SAMPLES, _SEED)[:, :COLUMNS])
         self._errors[:, AIM:] = 0.0  # the pot's chance knows those of the aim
         self._errors[0] = 0.0
@@ -97,7 +80,7 @@ class StrokeValue:
         ]
         return Candidates(rows, strokes, np.stack(columns, axis=-1).astype(np.float32))
 
-    def scores(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+    def scores(self, seen: Singles) -> Singles:
         """What the strokes seen (n, m, SIZE) are worth [points]: float32 (n, m)."""
         if self._layers is None:
             return seen[..., 0]
@@ -144,15 +127,12 @@ class StrokeValue:
             out[..., path.REACH].min(axis=2),
             np.log(first[..., path.OBJECT] + 0.05),
             np.log10(np.abs(first[..., path.ASIDE]) + 1e-5) + 3.0,
-            np.hypot(
-                out[..., path.X].std(axis=2), out[..., path.Y].std(axis=2)
-            ),  # how far the places are apart [m]
+            np.hypot(out[..., path.X].std(axis=2), out[..., path.Y].std(axis=2)),  # between the places [m]
             strokes[..., SPEED] * np.cos(pot.cut),  # what a stun shot gives the object ball [m/s]
         ]
 
     def _predict(self, at: Positions, strokes: Floats, pot: Pots) -> tuple[Floats, Floats]:
-        """What ``cue_ball_path`` predicts of strokes (n, m, 5) under each error, (n, m, k, SEEN), and the values of what
-        they leave (n, m, k) [points]; 0 where the visit ends."""
+        """What is predicted of strokes under each error, (n, m, k, SEEN), and the values of what they leave, (n, m, k)."""
         n, m = strokes.shape[:2]
         k, rows = len(self._errors), np.repeat(np.arange(n), m)
         at_pots = np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1)

@@ -21,17 +21,15 @@ from ...geometry import (
     POCKET_AIMS,
 )
 from ...tasks.pot_chance import pot_chance
-from ..prospects import in_parts
+from ..pot_geometry import in_parts
 
 POTS_SEEN = 6
 POT_ENTRIES = 13
 COLOUR_ENTRIES = 6
 SHARED = 28  # entries of the whole position: see ``_fill``
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
-LOGIT = SIZE - 1
-"""The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
-_CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
-"""Beyond these angles no pocket has a window (``kernels.window``)."""
+LOGIT = SIZE - 1  # the entry of the likeliest pot's logit, where the network's own estimate begins
+_CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))  # beyond these no pocket has a window
 _NEAR_CUSHION, _CLUSTER = 3.0 * BALL_RADIUS, 2.3 * BALL_RADIUS
 
 
@@ -102,8 +100,7 @@ def _same_balls(positions, on_table, before, on_before):
 
 @kernel
 def _fill(positions, on_table, ball_on, spread, opened, balls, open_to, best, row):
-    """One row of features; ``opened``: ``open_to`` is known. Work space: balls (22, 3), open_to (22, 6), best
-    (POTS_SEEN,)."""
+    """One row of features; ``opened``: ``open_to`` is known. Work space: balls (22, 3), open_to (22, 6), best (POTS_SEEN,)."""
     d = 2.0 * BALL_RADIUS
     for c in range(SIZE):
         row[c] = 0.0

@@ -1,8 +1,5 @@
-"""Which weights does the package hold? Value and policy of the planner, one file for each noise level.
-
-``results/make.sh weights`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
-``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
-out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code."""
+"""Which weights does the package hold? Value (members, out, in) and policy of the planner, one file of NumPy arrays for each
+noise level, and those of other players (``results/make.sh weights``). Reading them runs no code."""
 
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -14,6 +11,7 @@ import numpy as np
 from ..._lib.check import refuse
 from ..._lib.files import read_npz
 from ..._lib.types import Singles
+from ...planning.learned.dense_layers import Weights
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...planning.worth import Chance
 from ...tasks.noise import LEVELS, Noise
@@ -29,17 +27,17 @@ class Learned(NamedTuple):
     """What a planner has learned: a policy over strokes, and the layers of each network of its value."""
 
     policy: StrokePolicy
-    value: list[list[tuple[Singles, Singles]]]
+    value: Sequence[Weights]
 
 
 class StrokeLayers(NamedTuple):
     """What ``stroke_value`` has learned: the layers of a ``StrokeValue`` and of a ``FrameStrokes``, empty before that."""
 
-    visits: Sequence[tuple[Singles, Singles]] = ()
-    frames: Sequence[tuple[Singles, Singles]] = ()
+    visits: Weights = ()
+    frames: Weights = ()
 
 
-def layers_of(arrays: Mapping[str, Singles], of: str) -> list[tuple[Singles, Singles]]:
+def layers_of(arrays: Mapping[str, Singles], of: str) -> Weights:
     """Weight and bias of each layer of a network in the arrays of a file; ValueError for numbers that are none."""
     layers = [(arrays[f"{of}/{k}/weight"], arrays[f"{of}/{k}/bias"]) for k in range(LAYERS_EACH)]
     for k, pair in enumerate(layers):
@@ -55,7 +53,7 @@ def learned_of(arrays: Mapping[str, Singles]) -> Learned:
     return Learned(StrokePolicy(policy), members)
 
 
-def worth_in(arrays: Mapping[str, Any]) -> tuple[list[tuple[Singles, Singles]], Chance]:
+def worth_in(arrays: Mapping[str, Any]) -> tuple[Weights, Chance]:
     """The layers of a ``LearnedWorth`` and the chance to win in the arrays of a file."""
     return layers_of(arrays, "worth"), Chance(*arrays["chance"].tolist())
 
@@ -70,13 +68,13 @@ def learned_at(level: str) -> Learned:
 
 
 @cache
-def learned_worth() -> tuple[list[tuple[Singles, Singles]], Chance]:
+def learned_worth() -> tuple[Weights, Chance]:
     """The layers of a ``LearnedWorth``, for all levels, and the chance to win."""
     return worth_in(read_npz(FOLDER / WORTH))
 
 
 @cache
-def learned_menu(of: str) -> list[tuple[Singles, Singles]]:
+def learned_menu(of: str) -> Weights:
     """The layers of the network of ``strokes`` for "visits" or "frames", which read a stroke on the menu and the state."""
     return layers_of(read_npz(FOLDER / MENU), of)
 

@@ -16,7 +16,7 @@ from agents import evaluate
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning import Planner, Positions
-from snooker_env.players.saved import saved_player
+from snooker_env.players.saved_models import saved_player
 from tests.bombs import bombed
 from tests.torch_threads import deciding_on_one_thread
 

@@ -10,8 +10,8 @@ from agents.learning.expert_iteration import FRESH, ExpertIteration, judge_rewar
 from agents.learning.hyperparameters import Recipe
 from agents.learning.value_network import value_of
 from snooker_env.planning import Positions
-from snooker_env.planning.learned.learned_value import LearnedValue
-from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.learned.learned_worth import LearnedValue
+from snooker_env.planning.learned.stroke_policy import PolicyProposals
 from snooker_env.planning.learned.value_features import value_features
 from snooker_env.tasks import LEVELS
 from tests.positions import tables

@@ -18,7 +18,7 @@ from snooker_env.planning.learned.learned_worth import POINTS, SIZE, worth_of
 from snooker_env.planning.trials import turn_to_striker
 from snooker_env.planning.worth import SPREAD, Chance
 from snooker_env.players import FRAMES
-from snooker_env.players.tactician import Tactician
+from snooker_env.players.search_player import Tactician
 from snooker_env.tasks import LEVELS
 
 SHARED = {"options": {"cue": "real", "miss": "clear_path", "max_strokes": 8}, "layers": None, "chance": None}

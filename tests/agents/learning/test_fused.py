@@ -17,7 +17,7 @@ from agents.learning import fused
 from agents.learning.fused import Loss, Rollout
 from agents.learning.networks import JudgedPolicy, TablePolicy
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.planning.learned import table_kernels
+from snooker_env.planning.learned import stroke_policy
 from snooker_env.planning.learned.pot_view import BALL_X, VIEW_SPACE, with_pots
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 
@@ -69,7 +69,7 @@ def test_scores_are_those_of_the_network(policy, met):
     """Also through the distribution, from which a model plays; on tables read mirrored and not."""
     seen, masks = met
     expected, found = scored(policy, seen, masks), policy.fused.scores(seen, masks)
-    assert np.array_equal(found == table_kernels.NEVER, ~masks) and found.shape == (N, CHOICES)
+    assert np.array_equal(found == stroke_policy.NEVER, ~masks) and found.shape == (N, CHOICES)
     shifted = np.where(masks, found - expected, np.nan)
     apart = np.abs(shifted - np.nanmean(shifted, axis=1, keepdims=True))
     assert np.nanmax(apart) < 1.4e-5 < np.where(masks, found, 0.0).std()

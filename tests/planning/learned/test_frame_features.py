@@ -24,8 +24,6 @@ from tests.planning.test_frame_judge import frame_of
 
 COLOURS = VISIT_SIZE + NEAREST * RED_ENTRIES
 SHARED = COLOURS + 6
-
-
 MIDDLE = Spread(1e-3)
 
 
@@ -40,11 +38,7 @@ def test_one_ball_is_seen_whole_in_one_window():
     assert first == pytest.approx([1.0, 0.0, 0.5, 1.0, 0.5], abs=1e-6) and not second.any()
     window = 2.0 * asin(2.0 * BALL_RADIUS / 0.5)
     assert row[SHARED + 3 : SHARED + 6] == pytest.approx([0.25, window, window], rel=1e-5)
-    assert (
-        row[HIDDEN] == 0.0
-        and row[SHARED + 10] == pytest.approx(0.5)
-        and row[SHARED + 11] == pytest.approx(1.0)
-    )
+    assert row[HIDDEN] == 0.0 and row[SHARED + 10 : SHARED + 12] == pytest.approx([0.5, 1.0])
     assert row[SHARED + 16] == pytest.approx((8 + 7) ** 0.5 / 12.0)
 
 
@@ -64,10 +58,8 @@ def test_the_three_nearest_reds_come_in_order_and_the_table_is_read_mirrored():
     row = seen(at)
     far = sorted(np.hypot(x - 0.2, y - 0.1) for x, y in reds)[:3]
     assert row[VISIT_SIZE + 4 : COLOURS : RED_ENTRIES] == pytest.approx(far, rel=1e-6)
-    other = frame_of(
-        Position(cue=(-0.2, 0.1), reds=[(-x, y) for x, y in reds], black=(0.0, 1.4605), on="red")
-    )
-    mirrored = seen(other)
+    mirror = [(-x, y) for x, y in reds]
+    mirrored = seen(frame_of(Position(cue=(-0.2, 0.1), reds=mirror, black=(0.0, 1.4605), on="red")))
     assert mirrored[VISIT_SIZE:] == pytest.approx(row[VISIT_SIZE:], abs=1e-5)
 
 

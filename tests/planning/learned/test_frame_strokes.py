@@ -10,8 +10,8 @@ from snooker_env.planning.learned.frame_strokes import POT_SIZE, SAFETIES, SHARE
 from snooker_env.planning.learned.stroke_value import LOOKS
 from snooker_env.planning.proposals import safeties
 from snooker_env.planning.worth import lead_of
+from snooker_env.players.search_player import Tactician
 from snooker_env.players.stroke_value_player import StrokeValuePlayer
-from snooker_env.players.tactician import Tactician
 from snooker_env.players.weights import StrokeLayers, learned_strokes
 from snooker_env.tasks import Noise
 from snooker_env.tasks import cue_ball_path as path
@@ -120,11 +120,7 @@ def test_a_touching_ball_that_is_on_counts_as_struck_and_a_push_is_a_foul():
     frame = sn.SnookerVectorEnv(1, **OPTIONS)
     frame.reset(seed=0)
     touching = Position(cue=(0.0, 0.0), reds=[(0.0, 0.05252), (0.0, -0.8)], black=(0.5, 0.0), on="red")
-    for turn, fair in (
-        (0.5, False),
-        (-0.5, True),
-        (0.0, True),
-    ):  # into it, at the red away from it, at the black
+    for turn, fair in ((0.5, False), (-0.5, True), (0.0, True)):  # into it, at the other red, at the black
         _, _, (met, legal) = contacts(frame, touching, [[1.5, 0.0, 0.0, turn * np.pi, 0.0]])
         assert met[0] > 0 and legal[0] == fair
     apart = Position(cue=(0.0, 0.0), reds=[(0.0, 0.2), (0.0, -0.8)], black=(0.5, 0.0), on="red")

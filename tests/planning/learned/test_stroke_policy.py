@@ -6,7 +6,7 @@ import pytest
 from agents.learning.models import PRETRAINED, load_trained
 from snooker_env.benchmark import count_shots
 from snooker_env.planning import Planner, Positions, Search, VisitJudge, action_masks, pots
-from snooker_env.planning.learned.policy_proposals import TEMPERATURE, PolicyProposals
+from snooker_env.planning.learned.stroke_policy import TEMPERATURE, PolicyProposals
 from snooker_env.planning.proposals import AIM, RIM, SIDE, SPEED, TOP
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
 from tests.positions import chances_by_width, tables
