@@ -47,8 +47,7 @@ _LATEST = 1.7e308  # every time of a meeting is below
 
 @kernel
 def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
-    """Ball i = (r, v, w) met a ball at time t: write its next phase. ``way``: the unit vector to that ball, which now
-    has the velocity ``other``."""
+    """Ball i = (r, v, w) met a ball at t, which now has the velocity ``other``; ``way``: unit vector to it. Write its next phase."""
     (motion, state, falls), (r, v, w) = paths, ball
     if state[i] == FALLING:
         at, velocity = (r[0], r[1], falls[i, pocket.Z0]), (v[0], v[1], falls[i, pocket.U0])
@@ -64,8 +63,7 @@ def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
 
 @kernel
 def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
-    """The impact of two balls, ``before`` it v1, w1, v2, w2, lifts one and presses the other into the bed. The bed gives
-    back no more than the impact has lost."""
+    """Two balls part (``before``: v1, w1, v2, w2): one is lifted; the bed gives the other back at most what the impact has lost."""
     motion, state, _falls = paths
     impulse = max(ball_i[1][2], ball_j[1][2])
     if impulse > 0.0:

@@ -30,8 +30,7 @@ SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 
 @kernel
 def in_jaw(x, y, jaws, k, R, allowed):
-    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k, which is as deep as wide: far behind a straight facing
-    (a very large arc) lies another part of the table."""
+    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k, which is as deep as wide: a straight facing is a huge arc."""
     dx, dy, radius, cos_half = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_RADIUS], jaws[k, JAW_COS]
     d2, least = dx * dx + dy * dy, radius + R - allowed
     if not (d2 < least * least and dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY] >= cos_half * sqrt(d2)):

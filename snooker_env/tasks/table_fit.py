@@ -5,11 +5,9 @@ from functools import lru_cache
 import numpy as np
 
 from .._lib.check import refuse
-from ..game.banks import bank
-from ..game.layouts import STORED_IN, LayoutPlan, plan_of
+from ..game.layouts import STORED_IN, LayoutPlan, bank, plan_of
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.bounds import deepest
-from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
+from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike, deepest
 from .observations import REACH
 
 ROUNDING = 1e-9  # tolerance of noses, jaws and falls [m]

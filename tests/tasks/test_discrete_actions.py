@@ -12,7 +12,7 @@ from snooker_env.game.frame_columns import IN_HAND
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import POT_COLUMNS
 from snooker_env.geometry import BALL_RADIUS as R
-from snooker_env.kernels import LINE_ROWS, entry
+from snooker_env.kernels import entry
 from snooker_env.tasks import CHOICES, choice_of, lines, windows
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.stroke import VX, VY, WX, WY, WZ
@@ -105,7 +105,7 @@ def windows_of(positions, on_table, on, touching=0):
 
 
 def lines_of(positions, on_table, on):
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    found = np.empty((lines.LINE_ROWS, POT_COLUMNS))
     return found[: _lines(positions, on_table, on, found), : lines.LINE_WORTH]
 
 

@@ -31,7 +31,7 @@ SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
-"""Beyond these angles no pocket has a window (``kernels.window``)."""
+"""Beyond these angles no pocket has a window (``pots.window``)."""
 _NEAR_CUSHION, _CLUSTER = 3.0 * BALL_RADIUS, 2.3 * BALL_RADIUS
 
 
