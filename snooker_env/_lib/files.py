@@ -149,9 +149,7 @@ def unzip(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
     with file.open(part) as packed:
         data = packed.read(part.file_size + 1)
     if len(data) != part.file_size:
-        raise ValueError(
-            f"{part.filename} does not have the {part.file_size:,} bytes that its directory says"
-        )
+        raise ValueError(f"{part.filename} has not the {part.file_size:,} bytes that its directory says")
     return data
 
 

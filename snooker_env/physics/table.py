@@ -339,10 +339,8 @@ def _range(name: str, low: float, high: float) -> str | None:
     return f"|{name}| <= {high:.6g}" if low == -high else f"{low:.6g} <= {name} <= {high:.6g}"
 
 
-def _preset(name):
-    bed = PRESETS[name]
-    return Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
-
-
-_PRESETS: dict[str, Table] = {name: _preset(name) for name in PRESETS}
+_PRESETS: dict[str, Table] = {
+    name: Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
+    for name, bed in PRESETS.items()
+}
 UNBOUNDED: Table = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))

@@ -118,10 +118,8 @@ def simulate(
     table : str, Table or None
         A preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded cloth.
         ``physics.R`` must be the ``ball_radius`` of a preset.
-    physics : None, str, dict or Physics
-        The constants, as ``Physics.of`` takes them; None is "paper".
-    fidelity : str
-        How impacts are solved, as in ``collide_balls``.
+    physics, fidelity
+        As in ``collide_balls``.
     on_table : array_like, bool (n,), optional
         False for the balls to leave out; None: all are on the table.
     max_events : int

@@ -81,10 +81,8 @@ class Shot:
         ``Physics.flight`` also ``z``, the height of ball i [m].
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
-    physics : Physics
-        The constants of the shot.
-    table : Table, or None
-        The table of the shot, if it is known.
+    physics, table
+        The ``Physics`` and the ``Table`` of the shot; the table is None if it is not known.
 
     Examples
     --------

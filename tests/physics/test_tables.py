@@ -1,5 +1,4 @@
-"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it
-is played with."""
+"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it is played with."""
 
 import copy
 import pickle
