@@ -304,13 +304,8 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
 )
 def test_a_ball_held_by_its_spin_hops_at_the_spins_expense(angle, axis, spin, physics, table, gap):
     """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no hop gains energy."""
-    p = np.array(
-        [
-            (0.889 - R - gap, 0.5),
-            (0.889 - R - gap, 0.5)
-            - (np.nextafter(D, 1) + gap) * np.array([abs(np.cos(angle)), np.sin(angle)]),
-        ]
-    )
+    at, way = np.array([0.889 - R - gap, 0.5]), np.array([abs(np.cos(angle)), np.sin(angle)])
+    p = np.array([at, at - (np.nextafter(D, 1) + gap) * way])
     w = np.zeros((2, 3))
     w[0] = spin * np.array(axis)
     end = sn.simulate(p, np.zeros((2, 2)), w, table, physics)
