@@ -78,7 +78,7 @@ def find_first_contact(event_time, event_what, n_events, touching, positions, vx
 def place(positions, on_table, x, y, anywhere):
     """Put a cue ball in hand on the free place of the D, or bed, nearest to (x, y); it stays if none is."""
     on_table[CUE] = False
-    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS, anywhere)
+    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS, anywhere != 0)  # one type, one compile
     on_table[CUE] = True
     if free:
         positions[CUE, 0], positions[CUE, 1] = x, y
