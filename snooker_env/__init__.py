@@ -77,13 +77,9 @@ __all__ = [
     "warmup",
 ]
 
-_LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "SnookerEnv": "envs.snooker"}
-_LATER |= {
-    "SnookerVectorEnv": "envs.vector",
-    "MatchVectorEnv": "envs.match_vector",
-    "match_env": "envs",
-    "warmup": "benchmark.warmup",
-}
+_LATER = {"Options": "tasks.options", "advise": "advice", "player": "players", "warmup": "benchmark.warmup"}
+_LATER |= {"SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector"}
+_LATER |= {"match_env": "envs", "MatchVectorEnv": "envs.match_vector"}
 _LATER |= dict.fromkeys(("Planner", "Position", "Positions"), "planning")
 _LATER |= dict.fromkeys(("Replay", "replay"), "replays")
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""

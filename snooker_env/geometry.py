@@ -8,7 +8,7 @@ secret, ours agree with the quoted openings (3.5 in corner, 4 in middle at the f
 benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, radians, sin, sqrt
 from types import MappingProxyType
 
@@ -298,15 +298,12 @@ _TIGHT = _pocket(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889)
 _MIDDLE = _pocket(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319)
 
 
-def scale_pocket(pocket: Pocket, factor: float) -> Pocket:
-    """A pocket of the same shape, ``factor`` times as large."""
-    sizes = (getattr(pocket, name) * (1.0 if name == "turn" else factor) for name in _SIZES)
-    return _pocket(pocket.is_middle, *sizes)
-
-
 _POOL_CORNER = Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0)
 _POOL_MIDDLE = Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0)
-_UK_CORNER, _UK_MIDDLE = (scale_pocket(pocket, _INCH / BALL_RADIUS) for pocket in (_CORNER, _MIDDLE))
+_UK_CORNER, _UK_MIDDLE = (
+    replace(one, **{size: getattr(one, size) * (_INCH / BALL_RADIUS) for size in _SIZES if size != "turn"})
+    for one in (_CORNER, _MIDDLE)
+)
 _POOL_BALL = {"M": 0.163, "sin_theta": 0.27}
 _BEDS = {
     # throats of the corners 86.0 and 80.14 mm

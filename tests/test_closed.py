@@ -10,25 +10,13 @@ import snooker_env as sn
 from snooker_env.advice import Recorded, write_strokes
 
 AT = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
-COACH = (
-    "-m",
-    "snooker_env.advice",
-    "coach",
-    "mine.json",
-    "--cue",
-    "real",
-    "--physics",
-    "paper",
-    "--table",
-    "match",
-)
 COMMANDS = {
-    "coach": COACH,
-    "benchmark": ("-m", "snooker_env.benchmark", "tasks"),
-    "play": ("-m", "snooker_env.play", "--help"),
-    "watch": ("-m", "snooker_env.watch", "--help"),
-    "agents": ("-m", "agents.report", "--help"),
-    "benchmarks": ("-m", "benchmarks.coach", "--help"),
+    "coach": "snooker_env.advice coach mine.json --cue real --physics paper --table match",
+    "benchmark": "snooker_env.benchmark tasks",
+    "play": "snooker_env.play --help",
+    "watch": "snooker_env.watch --help",
+    "agents": "agents.report --help",
+    "benchmarks": "benchmarks.coach --help",
 }
 
 
@@ -40,9 +28,8 @@ def test_a_reader_that_leaves_ends_a_command(name, tmp_path):
     path = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])
     where = {"cwd": tmp_path, "env": os.environ | {"SNOOKER_ENV_QUIET": "1", "PYTHONPATH": path}}
     try:
-        done = subprocess.run(
-            [sys.executable, *COMMANDS[name]], stdout=write, stderr=subprocess.PIPE, text=True, **where
-        )
+        command = [sys.executable, "-m", *COMMANDS[name].split()]
+        done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, **where)
     finally:
         os.close(write)
     assert done.stderr == "" and done.returncode in (0, 1)  # argparse swallows what it cannot write

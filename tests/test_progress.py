@@ -28,10 +28,7 @@ def test_a_terminal_is_told_what_is_done_and_with_which_figures(monkeypatch):
     assert "400/1000" in text and " shots" in text and "round 4, loss 2.00" in text and text.endswith("\n")
 
 
-@pytest.mark.parametrize(
-    "out, environment",
-    [(io.StringIO(), "0"), (Terminal(), "1")],
-)
+@pytest.mark.parametrize("out, environment", [(io.StringIO(), "0"), (Terminal(), "1")])
 def test_a_file_and_a_quiet_process_are_told_nothing(out, environment, monkeypatch):
     monkeypatch.setenv("SNOOKER_ENV_QUIET", environment)
     assert said(out) == ""

@@ -8,7 +8,7 @@ import io
 
 import numpy as np
 
-from snooker_env.game.banks import FOLDER
+from snooker_env.game.layouts import FOLDER
 
 from .._common.command import Command, at_least, run, save_bytes
 from . import escape, opened, safety

@@ -11,11 +11,11 @@ from snooker_env.game.in_hand import within_d
 from snooker_env.game.pots import pots
 from snooker_env.game.referee import Situation, Stroke
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from snooker_env.physics import cue
 from snooker_env.physics.impact.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
 from snooker_env.simulation import play
+from snooker_env.simulation.impacts import strike
 
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
@@ -27,7 +27,7 @@ def stroke(rng, positions, on_table):
     red = positions[rng.integers(1, 1 + N_REDS)]
     aim = atan2(red[1] - positions[CUE, 1], red[0] - positions[CUE, 0]) + rng.normal(0.0, 0.02)
     speed, side, top = rng.uniform([3.0, -0.3, -0.3], [6.5, 0.3, 0.3]).tolist()
-    v, w = cue.strike(speed, aim, side, top, 0.0, PHYSICS)
+    v, w = strike(speed, aim, side, top, 0.0, PHYSICS)
     velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
     velocities[CUE], spins[CUE] = v[:2], w
     shot = play((positions, velocities, spins, on_table), PHYSICS, TABLE, FIDELITY, path=False)

@@ -83,8 +83,7 @@ def _sound(text: str) -> Any:
 
 
 def strict_json(text: str | bytes) -> Any:
-    """What JSON in UTF-8 holds. ValueError for NaN, Infinity, 1e999, an integer beyond ``MOST_INTEGER``, a repeated key, and
-    more than ``DEPTH`` levels."""
+    """What JSON in UTF-8 holds; ValueError for NaN, 1e999, an integer beyond ``MOST_INTEGER``, a key twice, over ``DEPTH`` levels."""
     if isinstance(text, bytes):
         text = text.decode("utf-8")
     numbers = dict.fromkeys(("parse_constant", "parse_int", "parse_float"), _sound)
@@ -150,9 +149,7 @@ def unzip(file: zipfile.ZipFile, part: zipfile.ZipInfo) -> bytes:
     with file.open(part) as packed:
         data = packed.read(part.file_size + 1)
     if len(data) != part.file_size:
-        raise ValueError(
-            f"{part.filename} does not have the {part.file_size:,} bytes that its directory says"
-        )
+        raise ValueError(f"{part.filename} has not the {part.file_size:,} bytes that its directory says")
     return data
 
 
@@ -172,8 +169,7 @@ def _array(data: bytes) -> np.ndarray:
 
 
 def arrays_in(data: bytes) -> dict[str, np.ndarray]:
-    """The arrays of an ``.npz``; nothing is unpickled. ValueError for anything else, and before unpacking if the directory
-    says more than ``MOST_NPZ`` bytes (or than ``data`` has)."""
+    """The arrays of an ``.npz``, no pickles; ValueError for anything else, and if it says that it holds over ``MOST_NPZ`` bytes."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as file:
             parts, most = file.infolist(), max(MOST_NPZ, len(data))

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
@@ -17,9 +16,6 @@ def say(text: str) -> None:
     if os.environ.get("SNOOKER_ENV_QUIET", "0") in ("", "0") and sys.stderr is not None:
         with suppress(OSError, ValueError):
             print(f"snooker_env: {text}", file=sys.stderr, flush=True)
-
-
-AHEAD = "python -m snooker_env warmup compiles everything ahead; "
 
 
 class Cost(NamedTuple):
@@ -38,39 +34,25 @@ class Cost(NamedTuple):
         return direct.union(*(kernel.cost._missing() for kernel in direct))
 
 
-class _WarmUp:
-    """The kernels that a warm-up makes ready."""
-
-    def __init__(self, kernels, tick):
-        self.kernels = [kernel for kernel in kernels if not kernel.signatures]
-        self.tick = tick
-        self.spoke = False
-
-    def note(self, text, line="warm-up, kernel {} of {}: {}"):
-        """On a terminal the bar, else a line."""
-        self.spoke = True
-        ready, many = sum(bool(kernel.signatures) for kernel in self.kernels), len(self.kernels)
-        if sys.stderr is not None and sys.stderr.isatty():
-            self.tick(ready, many)
-        else:
-            say(line.format(min(ready + 1, many), many, text))
-
-
-_running: list[_WarmUp] = []
+_bars: list[Callable[[], None]] = []  # of the warm-ups that run
 
 
 @contextmanager
 def warming_up(kernels: Iterable[Any], tick: Callable[[int, int], None]) -> Iterator[None]:
-    """Within this context notices count the ``kernels``, on a terminal by ``tick(ready, all)``; the last gives the whole time."""
-    _running.append(_WarmUp(kernels, tick))
-    start = time.perf_counter()
+    """Within this context notices are, on a terminal, a bar of the ``kernels``: ``tick(ready, all)`` before each long compile."""
+    asked, shown = [kernel for kernel in kernels if not kernel.signatures], []
+
+    def show() -> None:
+        shown.append(sum(bool(kernel.signatures) for kernel in asked))
+        tick(shown[-1], len(asked))
+
+    _bars.append(show)
     try:
         yield
-        if _running[-1].spoke:
-            elapsed = f"{time.perf_counter() - start:.0f} s"
-            _running[-1].note(elapsed, "warm-up: {1} kernels ready after {2}")
+        if shown:
+            show()
     finally:
-        _running.pop()
+        _bars.pop()
 
 
 class _Listener(event.Listener):
@@ -81,16 +63,15 @@ class _Listener(event.Listener):
         cost = getattr(kernel, "cost", None)  # other packages compile too
         if cost is None or not cost.what or (seconds := cost.total()) < 1:
             return
+        if _bars and sys.stderr is not None and sys.stderr.isatty():
+            _bars[-1]()
+            return
         cache = getattr(kernel, "_cache", None)
         kept = isinstance(cache, Kept) and cache.has_room()
-        text = f"compiling {cost.what} to machine code, {'once, ' if kept else ''}about {seconds} s"
-        where = f"kept in {CACHE_FOLDER}" if kept else "for this process only"
-        if not _running:
-            say(f"{text} ({where}; {AHEAD}SNOOKER_ENV_QUIET=1 hides this)")
-        elif _running[-1].spoke:  # where it is kept is said once
-            _running[-1].note(text)
-        else:
-            _running[-1].note(f"{text} ({where}; SNOOKER_ENV_QUIET=1 hides this)")
+        once, where = ("once, ", f"kept in {CACHE_FOLDER}") if kept else ("", "for this process only")
+        hint = "" if _bars else "python -m snooker_env warmup compiles everything ahead; "
+        text = f"compiling {cost.what} to machine code, {once}about {seconds} s"
+        say(f"{text} ({where}; {hint}SNOOKER_ENV_QUIET=1 hides this)")
 
     def on_end(self, event):
         pass

@@ -3,10 +3,6 @@
 from types import ModuleType
 from typing import Any
 
-ID = "Snooker-v0"
-ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
-VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
-
 _TASKS = "snooker_env.benchmark.environments"
 _NAMES = ("Break", "BreakClub", "Escape", "Safety", "Frame")
 FORMS: dict[str, dict[str, Any]] = {  # of Break, for scripts that take an id alone
@@ -15,7 +11,7 @@ FORMS: dict[str, dict[str, Any]] = {  # of Break, for scripts that take an id al
     "SnookerBreakTarget-v0": {"aim": "target", "observation": "flat"},
 }
 ENTRY_POINTS = {  # of each id the environment of one table, and that of many
-    ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),
+    "Snooker-v0": ("snooker_env.envs.snooker:SnookerEnv", "snooker_env.envs.vector:SnookerVectorEnv"),
     **{f"Snooker{name}-v0": (f"{_TASKS}:{name}Env", f"{_TASKS}:{name}VectorEnv") for name in _NAMES},
     **dict.fromkeys(FORMS, (f"{_TASKS}:BreakEnv", f"{_TASKS}:BreakVectorEnv")),
 }

@@ -19,13 +19,13 @@ from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import CUE, N_BALLS, BallOn, mask_of_present, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
 from ..physics import cloth
-from ..physics.cue import strike
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..planning import Position, pots
 from ..players.cue_stroke import CueStroke
 from ..replays import replay
 from ..replays.encode import physics_data, table_data, table_from
+from ..simulation.impacts import strike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
 

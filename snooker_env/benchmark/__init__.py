@@ -1,7 +1,7 @@
 """The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
 from ..players.program import AgentError
-from ..simulation.count import count_shots
+from ..simulation import count_shots
 from .agents import Agent
 from .checking import faults
 from .playing import COLUMNS

@@ -15,7 +15,7 @@ from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
 from ..players.seen import SeenPlayer
 from ..players.stroke_value_player import StrokeValuePlayer
-from ..simulation.count import count_shots
+from ..simulation import count_shots
 from .luck_counter import Decide, Luck
 from .tasks import Task
 

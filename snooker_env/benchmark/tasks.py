@@ -11,9 +11,8 @@ import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what
 from ..game.balls import N_REDS, VALUES
-from ..game.banks import HELD_OUT
+from ..game.layouts import HELD_OUT, plan_of
 from ..game.layouts import layout as deal
-from ..game.layouts import plan_of
 from ..tasks.options import Options
 
 HELD_OUT_SEED = 1_000_000

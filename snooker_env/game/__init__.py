@@ -1,8 +1,7 @@
 """The game of snooker: balls, rules, frames, layouts, without physics and Gymnasium; public: ``__all__``."""
 
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on
-from .banks import HELD_OUT
-from .layouts import LAYOUTS, POT_WINDOWS, layout
+from .layouts import HELD_OUT, LAYOUTS, POT_WINDOWS, layout
 
 __all__ = [
     "COLOUR_NAMES",

@@ -54,9 +54,7 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
             first, second = (-c2 - np.sqrt(root)) / (3.0 * c3), (-c2 + np.sqrt(root)) / (3.0 * c3)
     first, second = min(T, max(0.0, first)), min(T, max(0.0, second))
     best = np.inf
-    for part in range(3):
-        low = 0.0 if part == 0 else first if part == 1 else second
-        high = first if part == 0 else second if part == 1 else T
+    for low, high in ((0.0, first), (first, second), (second, T)):
         t = _minimum(c0, c1, c2, c3, low, high)
         for at in (low, t, high):
             best = min(best, np.hypot(dx + at * (vx + 0.5 * at * ax), dy + at * (vy + 0.5 * at * ay)))

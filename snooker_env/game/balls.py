@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .._lib.check import array, integer, refuse
+from .._lib.check import array, choice, flags, integer, refuse
 from .._lib.jit import kernel
 from .._lib.types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS
@@ -172,8 +172,7 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
 
 def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
-    """The most points that the striker can still score: 8 for each red, the value of each colour, 7 if any colour is on.
-    A free ball adds 8 with a red on (one more red), else the value of the colour on."""
+    """The most points that the striker can still score; a free ball adds 8 with a red on (one more red), else the colour on."""
     points, colours = 0, 0
     for i in range(1, N_BALLS):
         if (on_table >> i) & 1:
@@ -212,8 +211,7 @@ def ids_of(mask: int) -> tuple[int, ...]:
 
 
 def check_ball_on(field: str, ball_on: BallOn, mask: int, balls: str, *, in_turn: bool = True) -> None:
-    """ValueError unless this may be on with the balls of a mask, which the message calls ``balls``; ``in_turn``: a colour
-    only if it is the lowest."""
+    """ValueError unless this may be on with the balls of ``mask`` (``balls`` in words); ``in_turn``: a colour only if the lowest."""
     word, lowest = ball_on.name.lower(), BallOn(next_on(mask))
     if not balls_on(ball_on, mask & ~CUE_BIT):
         raise refuse(field, word, f"must name balls of which one is on the table ({balls})")
@@ -226,15 +224,10 @@ def check_ball_on(field: str, ball_on: BallOn, mask: int, balls: str, *, in_turn
 
 def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
     """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; ValueError for anything else."""
-    present = np.array(on_table)
-    if present.shape != (N_BALLS,) or present.dtype != np.bool_:
-        allowed = f"must be bool of shape ({N_BALLS},)"
-        raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
+    present = flags("on_table", on_table, (N_BALLS,))
     return array("positions", positions, (N_BALLS, 2)), present
 
 
 def colour(name: str) -> int:
     """The id of a colour by its name."""
-    if name not in COLOUR_NAMES:
-        raise refuse("colour", name, "must be one of " + ", ".join(map(repr, COLOUR_NAMES)))
-    return YELLOW + COLOUR_NAMES.index(name)
+    return YELLOW + COLOUR_NAMES.index(choice("colour", name, COLOUR_NAMES))

@@ -96,13 +96,6 @@ def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
             yield stroke and other, "saved", allowed
 
 
-def check_fit(frame: "Frame") -> None:
-    """Raise ValueError if the rules forbid a combination of the fields of a ``Frame``."""
-    for wrong, name, allowed in faults(frame):
-        if wrong:
-            raise refuse_what(name, "a position" if name == "saved" else repr(getattr(frame, name)), allowed)
-
-
 def check_fields(field: str, plain: object, kind: type) -> None:
     """Raise ValueError unless ``plain`` is a dict with exactly the fields of the dataclass ``kind``."""
     names = [part.name for part in fields(kind)]
@@ -402,7 +395,10 @@ class Frame:
         scores = tuple(scores) if isinstance(scores, list) else scores
         with within(field):
             frame = cls(**plain | {"scores": scores, "saved": saved})
-            check_fit(frame)
+            for wrong, name, allowed in faults(frame):
+                if wrong:
+                    value = "a position" if name == "saved" else repr(getattr(frame, name))
+                    raise refuse_what(name, value, allowed)
         return frame
 
 

@@ -97,36 +97,6 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 
 @kernel
-def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each
-    ball bars a disc; tried are the wish itself, the nearest points of circles, and all crossings."""
-    wish = x, y = _into_d(x, y)
-    reach = 2.0 * radius + CLEARANCE
-    place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
-    if place[2] == 0.0:
-        return x, y, True
-    for sign in (-1.0, 1.0):
-        place = _better(positions, on_table, wish, (sign * D_RADIUS, BAULK_Y), place, False, radius)
-    for i in range(N_BALLS):
-        if not on_table[i]:
-            continue
-        bx, by = positions[i, 0], positions[i, 1]
-        away = np.hypot(x - bx, y - by)
-        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
-        place = _better(positions, on_table, wish, (bx + reach * ux, by + reach * uy), place, False, radius)
-        for sign in (-1.0, 1.0):
-            half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
-            place = _better(positions, on_table, wish, (bx + sign * half, BAULK_Y), place, False, radius)
-            p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
-            place = _better(positions, on_table, wish, p, place, False, radius)
-            for j in range(i):
-                if on_table[j]:
-                    p = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
-                    place = _better(positions, on_table, wish, p, place, False, radius)
-    return place[0], place[1], place[2] < np.inf
-
-
-@kernel
 def _disc(positions, on_table, i, reach):
     """Disc i that bars places, of ball i or pocket i - 22: (x, y, radius); radius 0 for an absent ball."""
     if i >= N_BALLS:
@@ -135,40 +105,50 @@ def _disc(positions, on_table, i, reach):
 
 
 @kernel
-def nearest_anywhere(positions, on_table, x, y, radius):
-    """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
+def nearest_place(positions, on_table, x, y, radius, anywhere):
+    """The free place in the D, or on the bed, nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Balls
+    and, on the bed, pockets bar discs; tried are the wish itself, the nearest points of circles, and all crossings."""
     wide, high = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE
-    reach = 2.0 * radius + CLEARANCE
-    wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
-    place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
+    if anywhere:
+        wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
+    else:
+        wish = x, y = _into_d(x, y)
+    place = _better(positions, on_table, wish, wish, (x, y, np.inf), anywhere, radius)
     if place[2] == 0.0:
         return x, y, True
-    for i in range(N_BALLS + POCKET_PLACES.shape[0]):
+    for sign in (-1.0, 1.0):
+        if not anywhere:
+            place = _better(positions, on_table, wish, (sign * D_RADIUS, BAULK_Y), place, anywhere, radius)
+    reach = 2.0 * radius + CLEARANCE
+    for i in range(N_BALLS + POCKET_PLACES.shape[0] if anywhere else N_BALLS):
         bx, by, b = _disc(positions, on_table, i, reach)
         if b == 0.0:
             continue
         away = np.hypot(x - bx, y - by)
         ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
-        place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, True, radius)
+        place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, anywhere, radius)
         for sign in (-1.0, 1.0):
-            for side in (-1.0, 1.0):
-                p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
-                place = _better(positions, on_table, wish, p, place, True, radius)
-                p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
-                place = _better(positions, on_table, wish, p, place, True, radius)
+            for side in (-1.0, 1.0):  # the edges of the bed; or the lines of the D
+                if anywhere:
+                    p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
+                    place = _better(positions, on_table, wish, p, place, anywhere, radius)
+                    p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
+                elif side < 0.0:
+                    p = bx + sign * np.sqrt(b * b - (by - BAULK_Y) ** 2), BAULK_Y
+                else:
+                    p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, b, sign)
+                place = _better(positions, on_table, wish, p, place, anywhere, radius)
             for j in range(i):
                 ox, oy, o = _disc(positions, on_table, j, reach)
                 if o > 0.0:
                     p = _meet(bx, by, b, ox, oy, o, sign)
-                    place = _better(positions, on_table, wish, p, place, True, radius)
+                    place = _better(positions, on_table, wish, p, place, anywhere, radius)
     return place[0], place[1], place[2] < np.inf
 
 
 @entry
 def _nearest_place(positions, on_table, x, y, radius, anywhere):
-    if anywhere:
-        return nearest_anywhere(positions, on_table, x, y, radius)
-    return nearest_place(positions, on_table, x, y, radius)
+    return nearest_place(positions, on_table, x, y, radius, anywhere)
 
 
 def place_cue(

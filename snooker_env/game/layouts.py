@@ -2,7 +2,9 @@
 only, from a stream of random numbers: same key and counter, same table. Absent balls lie on spots."""
 
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from math import atan2, cos, hypot, sin
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,6 @@ from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
-from .banks import NO_BANK, bank_without, split_bank
 from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
@@ -20,6 +21,46 @@ from .snookered import NO_JAWS, snookered_from
 GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
 """Least gaps [m] of a ball placed at random to balls, to cushions, and of its centre to pockets."""
 STORED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)  # kinds of layouts, for the kernels
+
+# Banks of tables, which ``python -m benchmarks.make_tables NAME`` makes by simulated play. opened.npz: a break-off and
+# further hard strokes until the pack is spread; all 22 balls and some pot on a red. safety.npz: positions of frames in
+# which a red is on, but no pot. escape.npz: snookers from which constant choices often fail.
+FOLDER = Path(__file__).parent
+HELD_OUT = 2048
+"""Number of opened tables that only the layout "held_out" deals, for evaluation."""
+BANKS = {"opened": HELD_OUT, "safety": 512, "escape": 512}
+"""Of each bank the number of its last tables, which are held out."""
+NO_BANK = np.zeros((0, N_BALLS, 2))
+NO_BANK.setflags(write=False)
+
+
+@cache
+def bank(name: str) -> Floats:
+    """The tables of a bank: float64 (k, 22, 2) [m], NaN for a ball that is not on the table; read-only."""
+    with np.load(FOLDER / f"{name}.npz") as data:
+        tables = data["positions"].astype(np.float64)
+    tables.setflags(write=False)
+    return tables
+
+
+def split_bank(name: str) -> tuple[range, range]:
+    """Indices of the tables of a bank that are not held out, and of those that are."""
+    size = len(bank(name))
+    return range(size - BANKS[name]), range(size - BANKS[name], size)
+
+
+@lru_cache(8)
+def bank_without(name: str, unfit: tuple[int, ...]) -> Floats:
+    """The bank with each table of ``unfit`` replaced by the next of its part that fits; others stay."""
+    if not unfit:
+        return bank(name)
+    tables = bank(name).copy()
+    for part in split_bank(name):
+        fit = np.setdiff1d(part, unfit)
+        for k in np.intersect1d(part, unfit):
+            tables[k] = tables[fit[np.searchsorted(fit, k) % len(fit)]]
+    tables.setflags(write=False)
+    return tables
 
 
 @kernel

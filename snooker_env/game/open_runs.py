@@ -1,5 +1,4 @@
-"""Which balls on can run straight to which pockets, wherever the cue ball lies? The pots from each place of the cue ball
-are then those of ``find_pots``, bit for bit, at a fraction of its time."""
+"""Which balls on can run straight to which pockets, wherever the cue ball lies? ``find_pots`` to the bit, in less time."""
 
 from math import sqrt
 

@@ -35,20 +35,7 @@ POT_COLUMNS = 6
 
 @kernel
 def window(cos_angle, middle):
-    """Width of a pocket's window at an angle off its axis, by linear interpolation. An inner kernel.
-
-    Parameters
-    ----------
-    cos_angle : float
-        Cosine of the angle between the ball's path and the pocket's axis.
-    middle : bool
-        Whether it is a middle pocket.
-
-    Returns
-    -------
-    float
-        Width [m]; 0 beyond 50 degrees at a corner and 70 degrees in the middle.
-    """
+    """Width [m] of a pocket's window at an angle off its axis, by linear interpolation; 0: it is shut."""
     angle = acos(min(1.0, max(-1.0, cos_angle))) * 57.29577951308232
     angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if middle else (_CORNER_ANGLE, _CORNER_WINDOW)
     for k in range(len(angles) - 1):
@@ -60,24 +47,7 @@ def window(cos_angle, middle):
 
 @kernel
 def clear_segment(positions, on_table, start, end, skip1, skip2, d):
-    """Whether all balls except two are at least a distance away from a segment. An inner kernel.
-
-    Parameters
-    ----------
-    positions, on_table : numpy.ndarray
-        float64 (22, 2), centres of the balls [m]; bool (22,), which balls are on the table.
-    start, end : tuple of float
-        The ends (x, y) of the segment [m].
-    skip1, skip2 : int
-        Ids of the balls that do not count.
-    d : float
-        The distance [m].
-
-    Returns
-    -------
-    bool
-        False if a ball's centre is nearer than d to the segment.
-    """
+    """Whether the centres of all balls but ``skip1`` and ``skip2`` are at least ``d`` [m] from a segment."""
     (ax, ay), (bx, by) = start, end
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
@@ -148,24 +118,7 @@ def insert_pot(pots, count, ball, pocket, ghost, cos_cut, tolerance):
 
 @kernel
 def find_pots(positions, on_table, on, radius, pots):
-    """Find the direct pots of a layout, widest tolerance first. An inner kernel.
-
-    Parameters
-    ----------
-    positions, on_table : numpy.ndarray
-        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
-    on : int
-        Mask of the balls that may be potted.
-    radius : float
-        Radius of the balls [m].
-    pots : float64 (m, POT_COLUMNS)
-        Output: the m widest pots, columns ``POT_BALL`` to ``TOLERANCE``.
-
-    Returns
-    -------
-    int
-        Number of rows written.
-    """
+    """Write the direct pots of the mask ``on`` into ``pots`` (m, POT_COLUMNS), widest first; returns their number."""
     count = 0
     for ball in range(1, N_BALLS):
         if not on_table[ball] or not (on >> ball) & 1:

@@ -148,6 +148,5 @@ def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:
 
 
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
-    """The ``Verdict`` on a ``Stroke`` in a ``Situation``; ValueError if they do not fit together (a ball potted that was not on
-    the table, a nomination not allowed)."""
+    """The ``Verdict`` on a ``Stroke`` in a ``Situation``; ValueError if they do not fit together."""
     return verdict_of(ruling_of(situation, stroke))

@@ -131,12 +131,10 @@ def _find_snooker(positions, on_table, on, jaws, radius):
     return find_snooker(positions, on_table, on, jaws, radius)
 
 
-def is_snookered(
-    positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
-) -> tuple[bool, int]:
+def is_snookered(positions: Vectors, on_table: Flags, on: int, jaws: Vectors = NO_JAWS) -> tuple[bool, int]:
     """``find_snooker`` for Python: (bool, mask of effective snookering balls); ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
-    hidden_all, effective = _find_snooker(placed, present, on, array("jaws", jaws, (-1, 3)), float(radius))
+    hidden_all, effective = _find_snooker(placed, present, on, array("jaws", jaws, (-1, 3)), BALL_RADIUS)
     return bool(hidden_all), int(effective)

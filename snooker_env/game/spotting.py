@@ -31,8 +31,7 @@ def has_no_room(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other. Exact: y moves
-    to the far end of each interval that a ball bars, until none does."""
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) at which a ball on the line ``x`` touches no other; exact."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:

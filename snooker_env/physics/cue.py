@@ -2,13 +2,10 @@
 
 A raised cue presses the ball into the bed, and the cloth rubs (``flight.rub_bed``). Where balls fly, the bed throws it up."""
 
-from math import atan, cos, hypot, pi, sin, sqrt
+from math import atan, cos, sin, sqrt
 
-from .._lib.check import number, refuse
-from .._lib.jit import entry, kernel
-from .._lib.types import Real
+from .._lib.jit import kernel
 from .flight import SETTLE, rub_bed
-from .parameters import FASTEST, Physics
 
 MAX_ELEVATION = 1.5  # highest elevation of the cue [rad]: just below the vertical
 
@@ -38,25 +35,3 @@ def strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
         up = e_t * speed * se if e_t * speed * se >= SETTLE else 0.0
         (vx, vy), (wx, wy) = rub_bed((vx, vy), (wx, wy), speed * se + up, mu_s, R)
     return (vx, vy, up), (wx, wy, wz)
-
-
-@entry
-def _strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
-    return strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
-
-
-def strike(
-    speed: Real, aim: Real, side: Real, top: Real, elevation: Real, physics: Physics
-) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """``strike_ball`` for Python, with its input checked; see ``snooker_env.strike``."""
-    speed = number("speed", speed, 0, FASTEST)
-    aim = number("aim", aim)
-    if abs(aim) > 2.0 * pi:
-        raise refuse("aim", aim, "must be in radians, within a turn of 0; from degrees: np.radians(degrees)")
-    side, top = number("side", side), number("top", top)
-    elevation = number("elevation", elevation, 0, MAX_ELEVATION)
-    if hypot(side, top) > physics.max_offset * (1 + 1e-12):
-        allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
-        raise refuse("(side, top)", (side, top), allowed)
-    constants = physics.R, physics.mu_s, physics.end_mass_ratio, physics.bed_restitution
-    return _strike_ball(speed, aim, side, top, elevation, *constants)

@@ -38,8 +38,7 @@ STEEPEST = radians(45.0)
 the air: a masse, which nobody plays for position. Our choice; players' limits are not published."""
 (EDGE_AXIS, EDGE_SIDE, EDGE_LEVEL, EDGE_LOW, EDGE_HIGH, EDGE_BEHIND) = range(6)
 EDGE = 6
-"""Columns of a rail in an array without rows: those of a nose, and how far behind it the rail begins where its
-line runs through a pocket [m]."""
+"""Columns of a rail: those of a nose, and how far behind it the rail begins where its line runs through a pocket [m]."""
 FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
 """What a stroke's room does to it: nothing; the cue is raised; the tip is moved up; nobody can play it."""
 OVER_NOTHING, OVER_RAIL = -1, 0
@@ -163,8 +162,7 @@ def _over_rails(ax, ay, side, top, q, x, y, rails, R):
 
 @kernel
 def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
-    """``least_elevation`` of a cue along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL`` or a ball), and how far that
-    is behind the cue ball, along the cue [m]."""
+    """``least_elevation`` of a cue along (ax, ay), what sets it (``OVER_NOTHING``, ``OVER_RAIL``, a ball), and how far behind [m]."""
     x, y, q = positions[0, 0], positions[0, 1], sqrt(max(1.0 - side * side - top * top, 0.0))
     own, its = (sin(elevation), cos(elevation)) if elevation != 0.0 else (0.0, 1.0)
     se, ce, behind = _over_rails(ax, ay, side, top, q, x, y, rails, R)
@@ -190,8 +188,7 @@ def _least_over(side, top, ax, ay, elevation, positions, on_table, rails, R):
 
 @kernel
 def least_elevation(stroke, positions, on_table, rails, R):
-    """The least elevation of the cue [rad] for a stroke of ball 0: its own or a higher one; pi/2: it cannot be played.
-    ``stroke``: (side, top, aim of the cue, elevation); ``rails``: of ``rails_of``."""
+    """The least elevation [rad] of a stroke (side, top, aim of the cue, elevation): its own or a higher one; pi/2: unplayable."""
     side, top, aim, elevation = stroke
     return _least_over(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)[0]
 
@@ -244,8 +241,7 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
 
 @entry
 def in_room_over(stroke, positions, on_table, rails, R, max_offset, end_mass_ratio):
-    """``in_room`` of a stroke whose aim is where the ball leaves the tip; and what raised the cue or moved its tip, as of
-    ``_least_over``."""
+    """``in_room`` of a stroke whose aim is the ball's path; and what raised the cue or moved its tip, as of ``_least_over``."""
     speed, side, top, aim, elevation = stroke
     stroke = (speed, side, top, aim - squirt(side, end_mass_ratio), elevation)
     played, done = in_room(stroke, positions, on_table, rails, R, max_offset)

@@ -8,28 +8,9 @@ import numpy as np
 
 from .._lib.jit import entry, inline, kernel
 from .._lib.lanes import LANES, lane, lanes, lanes_at, lesser, no_more
-from . import cloth, events, flight, pocket
+from . import cloth, columns, events, flight, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
 from .cloth import AIR, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, UZ, VX, VY, WZ, X, Y, Z
-from .columns import (
-    AXIS_X,
-    CONSTANTS,
-    FALL_RADIUS,
-    FALL_X,
-    FALL_Y,
-    JAW_X,
-    JAW_Y,
-    NOSE_AXIS,
-    NOSE_SIDE,
-    P_BALLS,
-    P_E_J,
-    P_MU_BB_EXTRA,
-    P_MU_BB_LEAST,
-    P_MU_C,
-    P_R,
-    P_SIN,
-    P_SPIN,
-)
 from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
@@ -47,8 +28,7 @@ _LATEST = 1.7e308  # every time of a meeting is below
 
 @kernel
 def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
-    """Ball i = (r, v, w) met a ball at time t: write its next phase. ``way``: the unit vector to that ball, which now
-    has the velocity ``other``."""
+    """Ball i = (r, v, w) met a ball at t, which now has the velocity ``other``; ``way``: unit vector to it. Write its next phase."""
     (motion, state, falls), (r, v, w) = paths, ball
     if state[i] == FALLING:
         at, velocity = (r[0], r[1], falls[i, pocket.Z0]), (v[0], v[1], falls[i, pocket.U0])
@@ -64,15 +44,14 @@ def _begin_again(paths, i, t, ball, way, other, boundaries, phys):
 
 @kernel
 def _part(paths, i, j, t, ball_i, ball_j, before, boundaries, phys):
-    """The impact of two balls, ``before`` it v1, w1, v2, w2, lifts one and presses the other into the bed. The bed gives
-    back no more than the impact has lost."""
+    """Two balls part (``before``: v1, w1, v2, w2): one is lifted; the bed gives the other back at most what the impact has lost."""
     motion, state, _falls = paths
     impulse = max(ball_i[1][2], ball_j[1][2])
     if impulse > 0.0:
         after = ball_i[1], ball_i[2], ball_j[1], ball_j[2]
-        impulse = min(impulse, sqrt(2.0 * energy_loss(before, after, phys[P_R])))
+        impulse = min(impulse, sqrt(2.0 * energy_loss(before, after, phys[columns.P_R])))
     (xi, yi), (xj, yj) = ball_i[0], ball_j[0]
-    nx, ny = (xj - xi) / (2.0 * phys[P_R]), (yj - yi) / (2.0 * phys[P_R])
+    nx, ny = (xj - xi) / (2.0 * phys[columns.P_R]), (yj - yi) / (2.0 * phys[columns.P_R])
     both = (i, ball_i, (nx, ny), ball_j[1]), (j, ball_j, (-nx, -ny), ball_i[1])
     for k, (r, v, w), way, other in both:
         if state[k] == FALLING:
@@ -137,7 +116,7 @@ def _in_air(paths, i, kind, j, t, boundaries, phys):
     else:
         # it came over the pocket where its path enters the circle
         fall, speed2, back = boundaries.falls[j], vx * vx + vy * vy, 0.0
-        dx, dy, radius = x - fall[FALL_X], y - fall[FALL_Y], fall[FALL_RADIUS]
+        dx, dy, radius = x - fall[columns.FALL_X], y - fall[columns.FALL_Y], fall[columns.FALL_RADIUS]
         if speed2 > 0.0:
             along, inside2 = dx * vx + dy * vy, radius * radius - dx * dx - dy * dy
             back = (along + sqrt(max(0.0, along * along + inside2 * speed2))) / speed2
@@ -264,7 +243,7 @@ def _is_astray(motion, state, i, reach, boundaries):
 def _watch(paths, kind, j, t, phys):
     """Ball 0 has an event at t: is its stroke a jump shot? In columns of ``flight``, until that is certain."""
     motion, state, seen = paths
-    d, other = 2.0 * phys[P_R], j if kind == events.BALL_BALL else -1
+    d, other = 2.0 * phys[columns.P_R], j if kind == events.BALL_BALL else -1
     flies, struck = state[0] == AIR, int(seen[0, flight.STRUCK])
     (x, y), _v, _w = flight.evaluate(motion, state, 0, t, phys)
     if struck < 0:
@@ -430,18 +409,18 @@ def _over_pocket(paths, i, kind, j, t, boundaries, phys):
     motion, state, over = paths
     r, v, w = cloth.evaluate(motion, state, i, t, phys)
     if kind == events.DROP:
-        over[i, pocket.IN_X] = r[0] - boundaries.falls[j, FALL_X]
-        over[i, pocket.IN_Y] = r[1] - boundaries.falls[j, FALL_Y]
+        over[i, pocket.IN_X] = r[0] - boundaries.falls[j, columns.FALL_X]
+        over[i, pocket.IN_Y] = r[1] - boundaries.falls[j, columns.FALL_Y]
         over[i, pocket.POCKET] = j
         pocket.next_leg(paths, i, t, (r[0], r[1], 0.0), (v[0], v[1], 0.0), w, boundaries, phys)
         return
     v = over[i, pocket.END_VX], over[i, pocket.END_VY]
     if kind == events.JAW:
         at = r[0], r[1], over[i, pocket.Z1]
-        _, nx, ny, sin_phi, _ = pocket.jaw_gap(at, boundaries.jaws, j, boundaries.R, phys[P_SIN])
+        _, nx, ny, sin_phi, _ = pocket.jaw_gap(at, boundaries.jaws, j, boundaries.R, phys[columns.P_SIN])
         cos_phi = sqrt(1.0 - sin_phi * sin_phi)
         normal, falls_at = (nx * cos_phi, ny * cos_phi, sin_phi), (v[0], v[1], -over[i, pocket.U1])
-        u, w = free.against(falls_at, w, normal, phys[P_MU_C], phys[P_E_J], boundaries.R)
+        u, w = free.against(falls_at, w, normal, phys[columns.P_MU_C], phys[columns.P_E_J], boundaries.R)
         pocket.next_leg(paths, i, t, at, (u[0], u[1], -u[2]), w, boundaries, phys)
     else:  # back on the bed, which stops the vertical motion
         cloth.begin(motion, state, i, t, r, v, w, phys)
@@ -455,10 +434,10 @@ def _rebound_on_bed(paths, aloft, lift, i, kind, j, t, law, boundaries, series):
     noses, jaws, phys = boundaries.noses, boundaries.jaws, law.phys
     r, v, w = cloth.evaluate(motion, state, i, t, phys)
     if kind == events.CUSHION:
-        side, across = noses[j, NOSE_SIDE], noses[j, NOSE_AXIS] == AXIS_X
+        side, across = noses[j, columns.NOSE_SIDE], noses[j, columns.NOSE_AXIS] == columns.AXIS_X
         nx, ny = (side, 0.0) if across else (0.0, side)
     else:
-        nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
+        nx, ny = jaws[j, columns.JAW_X] - r[0], jaws[j, columns.JAW_Y] - r[1]
         d = sqrt(nx * nx + ny * ny)
         nx, ny = nx / d, ny / d
     u, w, solved = rebound(v, w, (nx, ny), kind == events.JAW, law, series)
@@ -510,8 +489,9 @@ def _end(balls, paths, status, last, phys):
             positions[i, 0], positions[i, 1] = r[0], r[1]
             velocities[i, 0], velocities[i, 1] = v[0], v[1]
             spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
-            if status == events.OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
-                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
+            # at rest a ball may still spin on the spot
+            if status == events.OK and phys[columns.P_SPIN] > 0.0:
+                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[columns.P_SPIN])
     return end
 
 
@@ -623,9 +603,9 @@ def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     time, what, segments = log
     status, n_events, n_segments, duration = ends
     phys, kicks, noses, jaws, falls, reach, fidelity, n_steps, doubt = setup
-    boundaries = Boundaries(noses, jaws, falls, phys[0, P_R])
+    boundaries = Boundaries(noses, jaws, falls, phys[0, columns.P_R])
     clear = clear_box(boundaries)
-    bad = np.empty(CONSTANTS)
+    bad = np.empty(columns.CONSTANTS)
     n = positions.shape[1]
     m = (n + LANES - 1) // LANES * LANES
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, flight.COLUMNS)))
@@ -642,9 +622,10 @@ def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
         law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
         first = law
         if kicks.shape[0] and kicks[k] > 0.0:
-            for c in range(CONSTANTS):  # with a constant friction, and without tables of the impacts of balls
+            # with a constant friction, and without tables of the impacts of balls
+            for c in range(columns.CONSTANTS):
                 bad[c] = law.phys[c]
-            bad[P_MU_BB_LEAST], bad[P_MU_BB_EXTRA], bad[P_BALLS] = kicks[k], 0.0, 0.0
+            bad[columns.P_MU_BB_LEAST], bad[columns.P_MU_BB_EXTRA], bad[columns.P_BALLS] = kicks[k], 0.0, 0.0
             first = Law(bad, fidelity, n_steps)
         world, its = Setup(law, first, boundaries, reach, clear), Log(time[k], what[k], segments[k])
         if aloft is None:

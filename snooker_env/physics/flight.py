@@ -23,29 +23,6 @@ from math import hypot, inf, sqrt
 
 from .._lib.jit import kernel
 from . import cloth, events, pocket
-from .cloth import (
-    AIR,
-    AX,
-    AY,
-    FALLING,
-    HI_X,
-    HI_Y,
-    LO_X,
-    LO_Y,
-    REST,
-    T0,
-    T_END,
-    UZ,
-    VX,
-    VY,
-    WX,
-    WY,
-    WZ,
-    X,
-    Y,
-    Z,
-    begin,
-)
 from .columns import (
     AXIS_X,
     FALL_RADIUS,
@@ -124,36 +101,36 @@ def press_into_bed(v, w, impulse, phys):
 @kernel
 def height(motion, state, i, t, phys):
     """Ball i's height above the bed [m] at t within its present phase, and its rate [m/s]; over a pocket below 0."""
-    if state[i] != AIR and state[i] != FALLING:
+    if state[i] != cloth.AIR and state[i] != cloth.FALLING:
         return 0.0, 0.0
-    dt, g = t - motion[i, T0], phys[P_G]
-    return motion[i, Z] + (motion[i, UZ] - 0.5 * g * dt) * dt, motion[i, UZ] - g * dt
+    dt, g = t - motion[i, cloth.T0], phys[P_G]
+    return motion[i, cloth.Z] + (motion[i, cloth.UZ] - 0.5 * g * dt) * dt, motion[i, cloth.UZ] - g * dt
 
 
 @kernel
 def evaluate(motion, state, i, t, phys):
     """``cloth.evaluate`` of a ball that may be in the air."""
-    if state[i] != AIR:
+    if state[i] != cloth.AIR:
         return cloth.evaluate(motion, state, i, t, phys)
-    dt, v = t - motion[i, T0], (motion[i, VX], motion[i, VY])
-    w = motion[i, WX], motion[i, WY], motion[i, WZ]
-    return (motion[i, X] + v[0] * dt, motion[i, Y] + v[1] * dt), v, w
+    dt, v = t - motion[i, cloth.T0], (motion[i, cloth.VX], motion[i, cloth.VY])
+    w = motion[i, cloth.WX], motion[i, cloth.WY], motion[i, cloth.WZ]
+    return (motion[i, cloth.X] + v[0] * dt, motion[i, cloth.Y] + v[1] * dt), v, w
 
 
 @kernel
 def take_off(motion, state, i, t, r, v, w, phys):
     """Ball i is in the air at t [s], at r = (x, y, z) with v = (vx, vy, u): write its flight, at the longest to the bed."""
     (x, y, z), (vx, vy, u), g = r, v, phys[P_G]
-    state[i] = AIR
-    motion[i, X], motion[i, Y], motion[i, Z] = x, y, z
-    motion[i, VX], motion[i, VY], motion[i, UZ] = vx, vy, u
-    motion[i, AX] = motion[i, AY] = 0.0
-    motion[i, WX], motion[i, WY], motion[i, WZ] = w
+    state[i] = cloth.AIR
+    motion[i, cloth.X], motion[i, cloth.Y], motion[i, cloth.Z] = x, y, z
+    motion[i, cloth.VX], motion[i, cloth.VY], motion[i, cloth.UZ] = vx, vy, u
+    motion[i, cloth.AX] = motion[i, cloth.AY] = 0.0
+    motion[i, cloth.WX], motion[i, cloth.WY], motion[i, cloth.WZ] = w
     root = sqrt(u * u + 2.0 * g * max(0.0, z))
     T = (u + root) / g if u > 0.0 else 2.0 * max(0.0, z) / (root - u) if root > 0.0 else 0.0
-    motion[i, T0], motion[i, T_END] = t, t + T
-    motion[i, LO_X], motion[i, HI_X] = min(x, x + vx * T), max(x, x + vx * T)
-    motion[i, LO_Y], motion[i, HI_Y] = min(y, y + vy * T), max(y, y + vy * T)
+    motion[i, cloth.T0], motion[i, cloth.T_END] = t, t + T
+    motion[i, cloth.LO_X], motion[i, cloth.HI_X] = min(x, x + vx * T), max(x, x + vx * T)
+    motion[i, cloth.LO_Y], motion[i, cloth.HI_Y] = min(y, y + vy * T), max(y, y + vy * T)
 
 
 @kernel
@@ -162,28 +139,28 @@ def leave(motion, state, i, t, r, v, w, up, phys):
     if up >= SETTLE:
         take_off(motion, state, i, t, (r[0], r[1], 0.0), (v[0], v[1], up), w, phys)
     else:
-        begin(motion, state, i, t, (r[0], r[1]), (v[0], v[1]), w, phys)
-        motion[i, Z] = motion[i, UZ] = 0.0
+        cloth.begin(motion, state, i, t, (r[0], r[1]), (v[0], v[1]), w, phys)
+        motion[i, cloth.Z] = motion[i, cloth.UZ] = 0.0
 
 
 @kernel
 def pair_time(motion, state, i, j, t, d, phys):
     """``detection.pair_time`` where one or both of the balls are in the air."""
-    ti, tj, g = t - motion[i, T0], t - motion[j, T0], phys[P_G]
-    axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
-    vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
+    ti, tj, g = t - motion[i, cloth.T0], t - motion[j, cloth.T0], phys[P_G]
+    axi, ayi, axj, ayj = motion[i, cloth.AX], motion[i, cloth.AY], motion[j, cloth.AX], motion[j, cloth.AY]
+    vxi, vyi, vxj, vyj = motion[i, cloth.VX], motion[i, cloth.VY], motion[j, cloth.VX], motion[j, cloth.VY]
     # a ball over a pocket is met as if it were on the bed
-    zi, ui = height(motion, state, i, t, phys) if state[i] == AIR else (0.0, 0.0)
-    zj, uj = height(motion, state, j, t, phys) if state[j] == AIR else (0.0, 0.0)
+    zi, ui = height(motion, state, i, t, phys) if state[i] == cloth.AIR else (0.0, 0.0)
+    zj, uj = height(motion, state, j, t, phys) if state[j] == cloth.AIR else (0.0, 0.0)
     c0 = (
-        motion[j, X] + (vxj + 0.5 * axj * tj) * tj - motion[i, X] - (vxi + 0.5 * axi * ti) * ti,
-        motion[j, Y] + (vyj + 0.5 * ayj * tj) * tj - motion[i, Y] - (vyi + 0.5 * ayi * ti) * ti,
+        motion[j, cloth.X] + (vxj + 0.5 * axj * tj) * tj - motion[i, cloth.X] - (vxi + 0.5 * axi * ti) * ti,
+        motion[j, cloth.Y] + (vyj + 0.5 * ayj * tj) * tj - motion[i, cloth.Y] - (vyi + 0.5 * ayi * ti) * ti,
         zj - zi,
     )
     c1 = vxj + axj * tj - vxi - axi * ti, vyj + ayj * tj - vyi - ayi * ti, uj - ui
-    falls = (g if state[i] == AIR else 0.0) - (g if state[j] == AIR else 0.0)
+    falls = (g if state[i] == cloth.AIR else 0.0) - (g if state[j] == cloth.AIR else 0.0)
     c2 = 0.5 * (axj - axi), 0.5 * (ayj - ayi), 0.5 * falls
-    return t + space_crossing(c0, c1, c2, d, min(motion[i, T_END], motion[j, T_END]) - t)
+    return t + space_crossing(c0, c1, c2, d, min(motion[i, cloth.T_END], motion[j, cloth.T_END]) - t)
 
 
 @kernel
@@ -250,8 +227,8 @@ def _jaw_time(r, v, jaws, k, high, T, phys):
 @kernel
 def edge_normal(motion, state, i, t, kind, j, boundaries, phys):
     """The unit vector from ball i in the air, at t, to the nose or jaw j that it touches."""
-    dt, R = t - motion[i, T0], phys[P_R]
-    x, y = motion[i, X] + motion[i, VX] * dt, motion[i, Y] + motion[i, VY] * dt
+    dt, R = t - motion[i, cloth.T0], phys[P_R]
+    x, y = motion[i, cloth.X] + motion[i, cloth.VX] * dt, motion[i, cloth.Y] + motion[i, cloth.VY] * dt
     z, _ = height(motion, state, i, t, phys)
     inset, noses = R - R * sqrt(1.0 - phys[P_SIN] * phys[P_SIN]), boundaries.noses
     if kind == events.JAW:
@@ -289,13 +266,15 @@ def _fall_at(x, y, falls):
 def next_event(motion, i, boundaries, clear, phys):
     """What ball i in the air meets next, but for balls: time [s], kind, index."""
     noses, jaws, falls, R = boundaries
-    T, g, high = motion[i, T_END] - motion[i, T0], phys[P_G], phys[P_SIN] * phys[P_R]
+    T, g, high = motion[i, cloth.T_END] - motion[i, cloth.T0], phys[P_G], phys[P_SIN] * phys[P_R]
     inset = R - sqrt(R * R - high * high)
-    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y]
+    lo_x, hi_x = motion[i, cloth.LO_X], motion[i, cloth.HI_X]
+    lo_y, hi_y = motion[i, cloth.LO_Y], motion[i, cloth.HI_Y]
     free_x = lo_x > clear[0] + inset and hi_x < clear[1] - inset
     if free_x and lo_y > clear[2] + inset and hi_y < clear[3] - inset:
-        return motion[i, T_END], events.LAND, -1
-    x, y, z, vx, vy, u = motion[i, X], motion[i, Y], motion[i, Z], motion[i, VX], motion[i, VY], motion[i, UZ]
+        return motion[i, cloth.T_END], events.LAND, -1
+    x, y, z = motion[i, cloth.X], motion[i, cloth.Y], motion[i, cloth.Z]
+    vx, vy, u = motion[i, cloth.VX], motion[i, cloth.VY], motion[i, cloth.UZ]
     into = _fall_at(x + vx * T, y + vy * T, falls)
     best, kind, index = T, events.DROP if into >= 0 else events.LAND, into
     for k in range(noses.shape[0]):
@@ -348,18 +327,18 @@ def next_event(motion, i, boundaries, clear, phys):
             at = z + (u - 0.5 * g * s) * s
             if at <= top:
                 best, kind, index = s, events.POT if at <= high else events.OFF, k if at <= high else -1
-    return motion[i, T0] + best, kind, index
+    return motion[i, cloth.T0] + best, kind, index
 
 
 @kernel
 def passes_over(motion, state, i, t, skip, d):
     """Whether ball i, in the air until t, flies over a part of a ball at rest other than ``skip``; ``d``: two radii [m]."""
-    x, y, dt, least = motion[i, X], motion[i, Y], t - motion[i, T0], d - OVER
-    wx, wy = motion[i, VX] * dt, motion[i, VY] * dt
+    x, y, dt, least = motion[i, cloth.X], motion[i, cloth.Y], t - motion[i, cloth.T0], d - OVER
+    wx, wy = motion[i, cloth.VX] * dt, motion[i, cloth.VY] * dt
     length2 = wx * wx + wy * wy
     for k in range(state.shape[0]):
-        if k != i and k != skip and state[k] == REST:
-            dx, dy = motion[k, X] - x, motion[k, Y] - y
+        if k != i and k != skip and state[k] == cloth.REST:
+            dx, dy = motion[k, cloth.X] - x, motion[k, cloth.Y] - y
             share = min(1.0, max(0.0, (dx * wx + dy * wy) / length2)) if length2 > 0.0 else 0.0
             dx, dy = dx - share * wx, dy - share * wy
             if dx * dx + dy * dy < least * least:

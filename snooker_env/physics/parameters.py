@@ -25,8 +25,7 @@ FASTEST = 1000.0
 invariants hold to 10,000; at 100,000 rounding (1e-16) exceeds the speed that counts as rest: shots do not
 end."""
 MOST_SPIN = 1e5
-"""Largest spin component of a shot [rad/s], what a strike at ``FASTEST`` can give. Measured: shots are right
-to 1e6 and do not end at 1e7."""
+"""Largest spin component of a shot [rad/s], of a strike at ``FASTEST``. Measured: right to 1e6; at 1e7 shots do not end."""
 FARTHEST = 1e6  # the largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
 """The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
@@ -46,7 +45,8 @@ _RANGES |= dict.fromkeys(("sin_theta", "e_t"), (0, 0.95))
 class Physics:
     """The physical constants and laws of a simulation, in SI units.
 
-    ``Physics()`` is the preset "paper" (see ``preset``); ``dataclasses.replace`` makes a changed copy.
+    ``Physics()`` is the preset "paper" (see ``preset``); ``dataclasses.replace`` makes a changed copy. ValueError for a
+    value outside its range.
 
     Parameters
     ----------
@@ -103,11 +103,6 @@ class Physics:
         Whether impacts of rolling balls come from tables, except at "reference" and "euler:N": faster and more
         accurate. Presets have stored tables; other constants make theirs at their first use, in 5 to 200 ms (after
         10 s, once, of compiling). False suits constants that are used for few shots.
-
-    Raises
-    ------
-    ValueError
-        For a value outside these ranges.
 
     Examples
     --------
@@ -204,35 +199,11 @@ class Physics:
 
     @classmethod
     def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
-        """Draw the constants of an unknown table, each uniform within its range and independent of the others.
+        """Draw the constants of an unknown table, each uniform within its range (docs/environment/conditions.md) and independent
+        of the others; all other fields, and the friction law that is scaled, are those of ``physics``.
 
-        docs/environment/conditions.md has the ranges of mu_s, mu_r, spin_decel, e_b, the scale of mu_bb, mu_c, e_c and
-        end_mass_ratio.
-
-        Parameters
-        ----------
-        rng : numpy.random.Generator
-            Where the eight numbers come from.
-        physics : str, dict, Physics or None, optional
-            All other fields, and the friction law that is scaled, see ``of``; default None: "paper".
-
-        Returns
-        -------
-        Physics
-            With ``tables=False``: they take longer to make than a table's few shots.
-
-        Raises
-        ------
-        ValueError
-            If ``rng`` is no generator, or a field does not go with the ranges.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> table = Physics.sample(np.random.default_rng(1), "match")
-        >>> 0.178 <= table.mu_s < 0.245, table.e_c_knee
-        (True, 2.02)
-        """
+        ``tables`` is False: they take longer to make than a table's few shots. ValueError if ``rng`` is no generator, or a
+        field does not go with the ranges."""
         if not isinstance(rng, np.random.Generator):
             raise refuse("rng", rng, "must be a numpy.random.Generator")
         return physics_with(cls.of(physics), conditions.draw_constants(rng.random(conditions.COLUMNS)))
@@ -332,19 +303,16 @@ _DRAWN[conditions.SPIN_DECEL] = columns.P_SPIN
 
 
 def _mu_bb(value: object) -> float | Literal["marlow"] | tuple[float, float, float]:
-    allowed = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
-    if isinstance(value, str):
-        if value != "marlow":
-            raise refuse("physics.mu_bb", value, allowed)
-        return value
-    if isinstance(value, (tuple, list)):
-        if len(value) != 3:
-            raise refuse("physics.mu_bb", value, allowed)
+    if isinstance(value, (tuple, list)) and len(value) == 3:
         a, b, c = (number("physics.mu_bb", x, 0) for x in value)
-        if a + b > 1:
-            raise refuse("physics.mu_bb", value, allowed)
-        return a, b, c
-    return number("physics.mu_bb", value, 0, 1)
+        if a + b <= 1:
+            return a, b, c
+    elif isinstance(value, str) and value == "marlow":
+        return value
+    elif not isinstance(value, (str, tuple, list)):
+        return number("physics.mu_bb", value, 0, 1)
+    allowed = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
+    raise refuse("physics.mu_bb", value, allowed)
 
 
 _MATCH = {"mu_r": 0.0114, "e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.02, "e_c_power": 0.243}

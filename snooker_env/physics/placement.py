@@ -3,23 +3,8 @@
 from math import inf, sqrt
 
 from .._lib.jit import entry, kernel
+from . import columns
 from .arrays import Boundaries
-from .columns import (
-    FALL_RADIUS,
-    FALL_X,
-    FALL_Y,
-    JAW_COS,
-    JAW_RADIUS,
-    JAW_UX,
-    JAW_UY,
-    JAW_X,
-    JAW_Y,
-    NOSE_AXIS,
-    NOSE_HIGH,
-    NOSE_LEVEL,
-    NOSE_LOW,
-    NOSE_SIDE,
-)
 
 OVERLAP_ALLOWED = 1e-6
 """Balls may overlap a ball or cushion by this much [m] (printed layouts), and then count as touching."""
@@ -30,11 +15,12 @@ SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 
 @kernel
 def in_jaw(x, y, jaws, k, R, allowed):
-    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k, which is as deep as wide: far behind a straight facing
-    (a very large arc) lies another part of the table."""
-    dx, dy, radius, cos_half = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_RADIUS], jaws[k, JAW_COS]
+    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k, which is as deep as wide: a straight facing is a huge arc."""
+    dx, dy = x - jaws[k, columns.JAW_X], y - jaws[k, columns.JAW_Y]
+    ux, uy = jaws[k, columns.JAW_UX], jaws[k, columns.JAW_UY]
+    radius, cos_half = jaws[k, columns.JAW_RADIUS], jaws[k, columns.JAW_COS]
     d2, least = dx * dx + dy * dy, radius + R - allowed
-    if not (d2 < least * least and dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY] >= cos_half * sqrt(d2)):
+    if not (d2 < least * least and dx * ux + dy * uy >= cos_half * sqrt(d2)):
         return False
     width = 2.0 * radius * (sqrt(1.0 - cos_half * cos_half) if cos_half > 0.0 else 1.0)
     return sqrt(d2) > radius - R - width
@@ -45,12 +31,13 @@ def _piece_at(x, y, boundaries, allowed, edge):
     """The piece of the table that a ball at (x, y) [m] is in: kind, index of nose, fall or jaw; or (SOUND, -1)."""
     noses, jaws, falls, R = boundaries
     for j in range(noses.shape[0]):
-        along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
-        gap = noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across
-        if noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH] and gap < -allowed:
+        along, across = (y, x) if noses[j, columns.NOSE_AXIS] == 0.0 else (x, y)
+        gap = noses[j, columns.NOSE_LEVEL] - R - noses[j, columns.NOSE_SIDE] * across
+        if noses[j, columns.NOSE_LOW] <= along <= noses[j, columns.NOSE_HIGH] and gap < -allowed:
             return IN_NOSE, j
     for j in range(falls.shape[0]):
-        dx, dy, radius = x - falls[j, FALL_X], y - falls[j, FALL_Y], falls[j, FALL_RADIUS] - edge
+        dx, dy = x - falls[j, columns.FALL_X], y - falls[j, columns.FALL_Y]
+        radius = falls[j, columns.FALL_RADIUS] - edge
         if dx * dx + dy * dy < radius * radius:
             return OVER_POCKET, j
     for j in range(jaws.shape[0]):
@@ -72,7 +59,7 @@ def _is_cut_off(x, y, reach, boundaries):
         return False
     ux, uy, nearest = out_x, out_y, inf
     for j in range(falls.shape[0]):
-        fx, fy = falls[j, FALL_X], falls[j, FALL_Y]
+        fx, fy = falls[j, columns.FALL_X], falls[j, columns.FALL_Y]
         far = (x - fx) * (x - fx) + (y - fy) * (y - fy)
         if far < nearest:
             nearest, ux, uy = far, min(max(fx, lo_x), hi_x) - fx, min(max(fy, lo_y), hi_y) - fy

@@ -139,8 +139,7 @@ def jaw_gap(r, jaws, k, R, sin_theta):
 
 @kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
-    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal; then whether the ball
-    touches any jaw, and whether one behind its arc."""
+    """The deepest jaw that a ball moves into: index (or -1), gap [m], closing [m/s], normal; if any touches, and one behind its arc."""
     vx, vy, u = v
     jaw, deepest, hard, touches, behind = -1, 0.0, 0.0, False, False
     px, py, pz = 0.0, 0.0, 0.0

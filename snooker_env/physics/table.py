@@ -3,7 +3,8 @@
 Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball there is lost."""
 
 from dataclasses import dataclass, field
-from math import hypot, inf
+from functools import partial
+from math import acos, cos, hypot, inf, pi, sqrt
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -11,15 +12,66 @@ import numpy as np
 from .._lib.check import array, choice, flags, number, refuse, refuse_what
 from .._lib.types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
-from .bounds import bounds_of, deepest, narrowest
 from .columns import FALL_RADIUS, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND, first_fault
 
 MOUTH = 0.012
-"""How far past the noses a ball can lie at rest [m], unless the pockets let it lie deeper: the depth between
-jaw and fall of snooker's middle pocket."""
+"""How far past the noses a ball can lie at rest [m], or deeper if pockets let it: in snooker's middle pocket, from jaw to fall."""
 PLAY = 1e-3  # facing noses must be at least this much further apart than a ball is wide [m]
+_PAST_THE_END = 5e-3
+"""So much of a jaw's circle beyond its arc's end counts [m]: an arc may end before the fall's edge, at the mouth of a middle
+pocket that is narrower than a ball by 4 mm."""
 SAME_BALL = 1e-9  # a ball's radius may differ by this much from the one that a table is made for [m]
+
+
+def _bounds_of(noses):
+    """``Table.bounds`` (2, 2) [m], from the noses (k, 5)."""
+    bounds, (axes, sides, levels, _, _) = np.full((2, 2), inf), noses.T
+    for axis in (0, 1):
+        for end, side in enumerate((-1, 1)):
+            bounds[axis, end] = side * max(levels[(axes == axis) & (sides == side)], default=inf)
+    return bounds
+
+
+def _find_narrowest(noses):
+    """The least distance of two facing noses that a ball can touch together [m], and their indices."""
+    least = (np.inf, -1, -1)
+    for a, (axis, side, level, low, high) in enumerate(noses):
+        for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
+            faces = a < b and axis == other_axis and side != other_side
+            if faces and low <= other_high and other_low <= high:
+                least = min(least, (float(level + other_level), a, b))
+    return least
+
+
+def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
+    """How far past the noses a ball of radius R can lie between a jaw and the fall, plus 0.5 mm [m]."""
+    deepest = 0.0
+    for x, y, edge in falls:
+        for jx, jy, radius, ux, uy, cos_half in jaws:
+            # the ball's centre on the fall's edge and the ball at the jaw: the crossing of two circles
+            dx, dy, reach, half = jx - x, jy - y, radius + R, acos(min(max(cos_half, -1.0), 1.0))
+            far = hypot(dx, dy)
+            if not abs(reach - edge) < far < reach + edge:
+                continue
+            along = (far * far + edge * edge - reach * reach) / (2.0 * far)
+            off = sqrt(edge * edge - along * along)
+            for side in (-1.0, 1.0):
+                px, py = x + (along * dx - side * off * dy) / far, y + (along * dy + side * off * dx) / far
+                on_arc = (px - jx) * ux + (py - jy) * uy >= reach * cos(min(half + _PAST_THE_END / reach, pi))
+                if on_arc and not _in_a_jaw(px, py, jaws, R):
+                    past = max(bounds[0, 0] - px, px - bounds[0, 1], bounds[1, 0] - py, py - bounds[1, 1])
+                    deepest = max(deepest, past + 5e-4)
+    return deepest
+
+
+def _in_a_jaw(x, y, jaws, R):
+    """As ``placement.in_jaw``, for all jaws."""
+    jaw_x, jaw_y, radius, ux, uy, cos_half = jaws.T
+    dx, dy = x - jaw_x, y - jaw_y
+    far, width = np.hypot(dx, dy), 2.0 * radius * np.where(cos_half > 0.0, np.sqrt(1.0 - cos_half**2), 1.0)
+    deep = (far < radius + R - 1e-6) & (far > radius - R - width)
+    return bool(np.any(deep & (dx * ux + dy * uy >= cos_half * far)))
 
 
 def _check_shapes(noses: Floats, jaws: Floats, falls: Floats) -> None:
@@ -58,8 +110,8 @@ class Table:
     """The shape of a table: straight noses, jaw arcs and falls.
 
     ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, the
-    constructor any from arrays, which are copied and read-only. A preset is one object, also after pickling
-    and copying.
+    constructor any from arrays, which are copied and read-only; ValueError if one is not valid. A preset is one object,
+    also after pickling and copying.
 
     Parameters
     ----------
@@ -83,11 +135,6 @@ class Table:
     ----------
     bounds : float64 (2, 2)
         Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite without one.
-
-    Raises
-    ------
-    ValueError
-        If an array has the wrong shape, or a nose, jaw or fall is not valid.
 
     Examples
     --------
@@ -123,10 +170,10 @@ class Table:
         if not named or len(names) not in (0, len(self.falls)):
             allowed = f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
             raise refuse("table.pockets", names, allowed)
-        bounds = bounds_of(self.noses)
+        bounds = _bounds_of(self.noses)
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
-        object.__setattr__(self, "_narrowest", narrowest(self.noses))
+        object.__setattr__(self, "_narrowest", _find_narrowest(self.noses))
         object.__setattr__(self, "_reaches", {})
 
     @classmethod
@@ -204,7 +251,8 @@ class Table:
             return Table.preset, (self.name,)
         if self is UNBOUNDED:
             return Table.of, (None,)
-        return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
+        own = partial(Table, ball_radius=self.ball_radius, pockets=self.pockets)
+        return own, (self.name, self.noses, self.jaws, self.falls)
 
     def _reach(self, R):
         """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth (nowhere without pockets), and
@@ -284,11 +332,6 @@ class Table:
 TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``table``
 
 
-def _again(name, noses, jaws, falls, ball_radius, pockets):
-    """A table that is no preset; pickling and copying call it."""
-    return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
-
-
 def _range(name: str, low: float, high: float) -> str | None:
     """A range as text; None for an infinite one."""
     if low == -inf and high == inf:
@@ -296,10 +339,8 @@ def _range(name: str, low: float, high: float) -> str | None:
     return f"|{name}| <= {high:.6g}" if low == -high else f"{low:.6g} <= {name} <= {high:.6g}"
 
 
-def _preset(name):
-    bed = PRESETS[name]
-    return Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
-
-
-_PRESETS: dict[str, Table] = {name: _preset(name) for name in PRESETS}
+_PRESETS: dict[str, Table] = {
+    name: Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
+    for name, bed in PRESETS.items()
+}
 UNBOUNDED: Table = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))

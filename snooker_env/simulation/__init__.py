@@ -15,12 +15,40 @@ from ..physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status
 from ..physics.impact import contact
 from ..physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
 from ..physics.table import Table, TableLike
-from .count import count
 from .shot import EVENT, WHY, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096  # of one shot: the times of all pairs are stored (134 MB)
 _FIRST_LOG = 512
+_LOCK, _SHOTS = threading.Lock(), 0  # a shot that is simulated again with a longer log counts once
+
+
+def count(shots: int) -> None:
+    """Add a number of shots; safe in any thread."""
+    global _SHOTS
+    with _LOCK:
+        _SHOTS += shots
+
+
+def count_shots() -> int:
+    """Count the shots that this process has simulated so far.
+
+    Returns
+    -------
+    int
+        Their number: read it before and after a decision. Single impacts are no shots.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.benchmark import count_shots
+    >>> before = count_shots()
+    >>> _ = sn.simulate(np.zeros((1, 2)), np.array([[1.0, 0.0]]), np.zeros((1, 3)))
+    >>> count_shots() - before
+    1
+    """
+    return _SHOTS
 
 
 def _balls(positions, velocities, spins, on_table, flies, batch, checked=False):
@@ -90,10 +118,8 @@ def simulate(
     table : str, Table or None
         A preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded cloth.
         ``physics.R`` must be the ``ball_radius`` of a preset.
-    physics : None, str, dict or Physics
-        The constants, as ``Physics.of`` takes them; None is "paper".
-    fidelity : str
-        How impacts are solved, as in ``collide_balls``.
+    physics, fidelity
+        As in ``collide_balls``.
     on_table : array_like, bool (n,), optional
         False for the balls to leave out; None: all are on the table.
     max_events : int
@@ -260,8 +286,7 @@ _NO_KICKS = np.empty(0)
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most shots. A shot
-    inside a shot (a signal, a trace function) finds none and makes its own."""
+    """``log_space`` of one shot: this thread's last, as a new one takes longer than most shots; a shot inside a shot makes its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)

@@ -1,18 +1,19 @@
 """How does one compute a single impact, or a strike? Checked input in, plain arrays out."""
 
+from math import hypot, pi
 from typing import Any
 
 import numpy as np
 
-from .._lib.check import array, refuse
+from .._lib.check import array, number, refuse
 from .._lib.jit import entry
 from .._lib.types import Fidelity, Floats, Real, Vector
-from ..physics import cue
 from ..physics.arrays import Law
 from ..physics.columns import P_E_B
+from ..physics.cue import MAX_ELEVATION, strike_ball
 from ..physics.impact import contact
 from ..physics.impact.polynomial import WORK
-from ..physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
+from ..physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN_IMPACT, Physics, PhysicsLike
 from .shot import SimulationError
 
 
@@ -26,6 +27,11 @@ def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
 def _collide_cushion(v, w, normal, phys, fidelity, n_steps):
     e = contact.cushion_restitution(v[0] * normal[0] + v[1] * normal[1], phys)
     return contact.collide_cushion(v, w, normal, Law(phys, fidelity, n_steps), e, np.empty(WORK))
+
+
+@entry
+def _strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
+    return strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
 
 
 def _unit_normal(normal):
@@ -106,9 +112,7 @@ def collide_cushion(
         Velocity [m/s] and spin [rad/s], components within 1e6 m/s and 1e9 rad/s of zero.
     normal : array_like, float (3,)
         Horizontal unit vector INTO the cushion.
-    physics : None, str, dict or Physics
-        The constants, as ``Physics.of`` takes them; None is "paper".
-    fidelity : str
+    physics, fidelity
         As in ``collide_balls``, but "fast" integrates with a loose tolerance: no closed form has the cloth's
         reaction, worth 7 % of the rebound.
 
@@ -169,5 +173,15 @@ def strike(
     >>> v.tolist(), w.tolist()
     ([2.0, 0.0, 0.0], [0.0, 0.0, 0.0])
     """
-    v, w = cue.strike(speed, aim, side, top, elevation, Physics.of(physics))
+    physics = Physics.of(physics)
+    speed, aim = number("speed", speed, 0, FASTEST), number("aim", aim)
+    if abs(aim) > 2.0 * pi:
+        raise refuse("aim", aim, "must be in radians, within a turn of 0; from degrees: np.radians(degrees)")
+    side, top = number("side", side), number("top", top)
+    elevation = number("elevation", elevation, 0, MAX_ELEVATION)
+    if hypot(side, top) > physics.max_offset * (1 + 1e-12):
+        allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
+        raise refuse("(side, top)", (side, top), allowed)
+    constants = physics.R, physics.mu_s, physics.end_mass_ratio, physics.bed_restitution
+    v, w = _strike_ball(speed, aim, side, top, elevation, *constants)
     return np.array(v), np.array(w)

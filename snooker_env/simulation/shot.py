@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._lib.check import array, refuse
+from .._lib.jit import entry
 from .._lib.types import Bools, Floats, Ints, Real, Vector
-from ..physics import trajectory
+from ..physics import cloth, flight
 from ..physics.events import Status
 from ..physics.parameters import Physics
 from ..physics.table import Table
@@ -36,6 +37,30 @@ WHY = {
 }
 
 
+@entry
+def _states_at(segments, n_balls, times, phys, positions, velocities, spins):
+    """Fill positions (m, n, 2) or (m, n, 3) [m], velocities [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,) [s].
+    ``segments`` (k, cloth.SEGMENT) in order of time: each holds until the ball's next; of several at one time the last."""
+    k = segments.shape[0]
+    state = np.empty(k, np.int64)
+    for s in range(k):
+        state[s] = int(segments[s, cloth.SEGMENT_STATE])
+    current = np.empty(n_balls, np.int64)
+    for m in range(times.shape[0]):
+        t = times[m]
+        for s in range(k):  # the log is in order of time
+            if segments[s, cloth.T0] > t:
+                break
+            current[int(segments[s, cloth.SEGMENT_BALL])] = s
+        for i in range(n_balls):
+            r, v, w = flight.evaluate(segments, state, current[i], t, phys)
+            positions[m, i, 0], positions[m, i, 1] = r
+            velocities[m, i, 0], velocities[m, i, 1] = v
+            if positions.shape[2] == 3:
+                positions[m, i, 2], velocities[m, i, 2] = flight.height(segments, state, current[i], t, phys)
+            spins[m, i, 0], spins[m, i, 1], spins[m, i, 2] = w
+
+
 @dataclass(frozen=True, eq=False)
 class Shot:
     """One simulated shot, as ``simulate`` returns it; its arrays are new ones.
@@ -56,10 +81,8 @@ class Shot:
         ``Physics.flight`` also ``z``, the height of ball i [m].
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
-    physics : Physics
-        The constants of the shot.
-    table : Table, or None
-        The table of the shot, if it is known.
+    physics, table
+        The ``Physics`` and the ``Table`` of the shot; the table is None if it is not known.
 
     Examples
     --------
@@ -101,13 +124,15 @@ class Shot:
         times = array("t", [t] if single else t, (-1,))
         if times.size and times.min() < 0:
             raise refuse("t", float(times.min()), "must not be negative")
-        trajectory.check_path(self.segments)
+        if not len(self.segments):
+            allowed = "must be there: simulate() keeps them, environments with keep_history = True"
+            raise refuse("shot.segments", "none", allowed)
         n, m = len(self.positions), len(times)
         space = 3 if self.physics.flight else 2
         out = np.zeros((m, n, space)), np.zeros((m, n, space)), np.zeros((m, n, 3))
         # the compiled type; an unpickled shot may be read-only
         segments = np.require(self.segments, np.float64, ["C", "W"])
-        trajectory.states_at(segments, n, times, self.physics.pack(), *out)
+        _states_at(segments, n, times, self.physics.pack(), *out)
         if self.physics.spin_decel > 0:
             out[2][times >= self.duration] = 0.0  # at exactly that time rounding may leave 1e-14 of a spin
         return (out[0][0], out[1][0], out[2][0]) if single else out
@@ -131,14 +156,8 @@ class ShotBatch:
 
     Attributes
     ----------
-    positions : float64 (b, n, 2)
-        Centres of the balls at rest [m].
-    potted : int64 (b, n)
-        Pocket of each ball, or -1.
-    on_table : bool (b, n)
-        True for the balls that are still in play.
-    duration : float64 (b,)
-        Time until everything is at rest [s].
+    positions, potted, on_table, duration
+        float64 (b, n, 2) [m], int64 (b, n), bool (b, n) and float64 (b,) [s].
     event_count : int64 (b,)
         Number of events of each shot.
     events : list of structured arrays, or None

@@ -11,17 +11,15 @@ from gymnasium import spaces
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
-from ..game.banks import bank
 from ..game.frame import MISS_RULES
-from ..game.layouts import STORED_IN, LayoutPlan, plan_of
+from ..game.layouts import STORED_IN, LayoutPlan, bank, plan_of
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import conditions
-from ..physics.bounds import deepest
 from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike, physics_with
-from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
+from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike, deepest
 from . import observations
 from .box_actions import AIMS, Actions
 from .declarations import SAYS

@@ -11,7 +11,7 @@ from .._lib.types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
 from ..game.fouls import AUTO
 from ..game.frame_columns import ANYWHERE, IN_HAND
-from ..game.in_hand import nearest_anywhere, nearest_place
+from ..game.in_hand import nearest_place
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.cue_room import in_room, raise_cue
@@ -19,8 +19,7 @@ from ..physics.engine import EventKind
 from ..physics.events import OFF_TABLE
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import EVENT, MAX_EVENTS, Shot
-from ..simulation.count import count
+from ..simulation import EVENT, MAX_EVENTS, Shot, count
 from . import discrete_actions
 from .box_actions import place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_PLACEMENT, A_SPEEDS, playable
@@ -79,10 +78,7 @@ def find_first_contact(event_time, event_what, n_events, touching, positions, vx
 def place(positions, on_table, x, y, anywhere):
     """Put a cue ball in hand on the free place of the D, or bed, nearest to (x, y); it stays if none is."""
     on_table[CUE] = False
-    if anywhere:
-        x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
-    else:
-        x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
+    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS, anywhere != 0)  # one type, one compile
     on_table[CUE] = True
     if free:
         positions[CUE, 0], positions[CUE, 1] = x, y

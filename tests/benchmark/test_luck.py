@@ -8,9 +8,8 @@ from snooker_env.benchmark import TASKS, play_visits
 from snooker_env.benchmark.luck_counter import Luck
 from snooker_env.benchmark.playing import Decider, rounds, rows_of, tables_for
 from snooker_env.benchmark.statistics import adjust
-from snooker_env.game.banks import split_bank
 from snooker_env.game.frame_columns import POINTS
-from snooker_env.game.layouts import layout, plan_of
+from snooker_env.game.layouts import layout, plan_of, split_bank
 from snooker_env.planning.positions import of_tables
 from snooker_env.players import FRAMES, VISITS
 from snooker_env.players import luck as lucks

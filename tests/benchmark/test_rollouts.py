@@ -8,7 +8,7 @@ from snooker_env.benchmark.rollouts import FIGURES, PlayedStrokes, counts, summa
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
-from snooker_env.game.banks import HELD_OUT
+from snooker_env.game.layouts import HELD_OUT
 
 
 def strokes(**columns):

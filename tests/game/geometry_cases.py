@@ -12,6 +12,14 @@ ABOUT = "id kind title rule confidence note expect "
 _SPOT = from_python(spot)
 
 
+def lie(places):
+    """``positions`` and ``on_table`` of balls at these places, by their ids."""
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    return positions, on_table
+
+
 def spot_colours(positions, on_table, mask):
     """New ``positions`` and ``on_table`` with the colours of ``mask`` spotted."""
     placed, present = positions.copy(), on_table.copy()
@@ -54,12 +62,9 @@ def run_spotting(case):
     if problem:
         return problem
     to_spot = [colour(name) for name in case["to_spot"]]
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
     spare = [i for i in range(1, N_BALLS) if i not in to_spot]
     standing = blockers(case["occupied"], case.get("no_room_toward_top", []))
-    for ball, place in zip(spare, standing, strict=False):
-        positions[ball], on_table[ball] = place, True
-    positions, on_table = spot_colours(positions, on_table, mask_of(to_spot))
+    positions, on_table = spot_colours(*lie(dict(zip(spare, standing, strict=False))), mask_of(to_spot))
     if not all(on_table[to_spot]):
         return "a colour was not returned"
     for name, wanted in case["expect"].items():
@@ -103,12 +108,9 @@ def run_snooker_geometry(case):
     problem = unknown(case, ABOUT + "cue balls_on obstructing")
     if problem:
         return problem
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
     on = range(1, 1 + len(case["balls_on"]))
-    obstructing = range(N_BALLS - len(case["obstructing"]), N_BALLS)
-    for ball, place in zip(
-        [CUE, *on, *obstructing], [case["cue"], *case["balls_on"], *case["obstructing"]], strict=True
-    ):
-        positions[ball], on_table[ball] = np.array(place) / 1000, True
+    balls = [CUE, *on, *range(N_BALLS - len(case["obstructing"]), N_BALLS)]
+    places = np.array([case["cue"], *case["balls_on"], *case["obstructing"]]) / 1000
+    positions, on_table = lie(dict(zip(balls, places, strict=True)))
     got = is_snookered(positions, on_table, mask_of(on))[0]
     return None if got == case["expect"] else f"expected {case['expect']}, got {got}"

@@ -7,13 +7,14 @@ from scipy import ndimage
 import snooker_env as sn
 from snooker_env.game import attempt
 from snooker_env.game.attempt import ATTEMPT_GAP
-from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW, BallOn, mask_of
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, YELLOW, BallOn, mask_of
 from snooker_env.game.shut_in import shut_in
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics import cloth
 from snooker_env.physics.table import Table
 from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
+from tests.game.geometry_cases import lie
 from tests.kernels import from_python
 from tests.tables import frame_state
 
@@ -49,9 +50,7 @@ def sampled_gap(segments, until, places):
 def test_shots_off_cushions_against_dense_sampling():
     """Two reds that are on, and a black that may be struck first; side, top and several cushions."""
     rng, met = np.random.default_rng(4), {"black": 0, "none": 0, "near": 0}
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    positions[[CUE, 1, 2, BLACK]] = (0.1, -1.2), (0.5, 1.3), (-0.6, 0.9), (0.0, 0.5)
-    on_table[[CUE, 1, 2, BLACK]] = True
+    positions, on_table = lie({CUE: (0.1, -1.2), 1: (0.5, 1.3), 2: (-0.6, 0.9), BLACK: (0.0, 0.5)})
     for _ in range(80):
         velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         v, spins[CUE] = sn.strike(*rng.uniform((0.5, 0, -0.3, -0.3), (5, 2 * np.pi, 0.3, 0.3)))
@@ -81,11 +80,8 @@ def ring(radius, at=(0.0, 0.0), turn=0.0, balls=range(YELLOW, N_BALLS)):
 
 
 def is_shut_in(places, on):
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    for ball, place in places.items():
-        positions[ball], on_table[ball] = place, True
     table = Table.preset("match")
-    return bool(shut_in(positions, on_table, mask_of(on), table.noses, table.jaws, R))
+    return bool(shut_in(*lie(places), mask_of(on), table.noses, table.jaws, R))
 
 
 def flooded(places, on, reach, h=0.006):
@@ -127,8 +123,7 @@ CAGES = [{CUE: (0, 0), 1: (0, 1)} | ring(0.0526), {CUE: (0, 0), 1: (0, 1)} | rin
 
 @pytest.mark.parametrize("cage", CAGES)
 @pytest.mark.parametrize(
-    ("speed", "aim", "miss"),
-    [(2.5, 92.0, False), (0.3, 90.0, True), (6.0, -90.0, True)],
+    ("speed", "aim", "miss"), [(2.5, 92.0, False), (0.3, 90.0, True), (6.0, -90.0, True)]
 )
 def test_a_shut_in_striker_attempts_what_would_reach_a_ball_on_without_the_balls_between(
     cage, speed, aim, miss

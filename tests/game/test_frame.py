@@ -4,15 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from snooker_env.game.balls import (
-    BLACK,
-    BLUE,
-    COLOURS_MASK,
-    PINK,
-    BallOn,
-    balls_on,
-    ids_of,
-)
+from snooker_env.game.balls import BLACK, BLUE, COLOURS_MASK, PINK, BallOn, balls_on, ids_of
 from snooker_env.game.frame import Frame, points_available
 from snooker_env.game.referee import FULL_TABLE, Stroke
 

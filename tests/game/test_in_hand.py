@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import in_hand
-from snooker_env.game.balls import CLEARANCE, SPOTS
+from snooker_env.game.balls import CLEARANCE
 from snooker_env.game.in_hand import place_cue
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics.table import Table
+from tests.game.geometry_cases import lie
 from tests.kernels import from_python
 
 in_d, on_bed = from_python(in_hand.in_d), from_python(in_hand.on_bed)
@@ -17,10 +18,7 @@ REACH = 2 * BALL_RADIUS + CLEARANCE
 
 
 def table(*places):
-    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
-    for ball, place in enumerate(places, start=1):
-        positions[ball], on_table[ball] = place, True
-    return positions, on_table
+    return lie(dict(enumerate(places, start=1)))
 
 
 def test_a_full_d_and_wrong_input_are_refused():

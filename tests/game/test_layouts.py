@@ -9,7 +9,7 @@ from benchmarks.make_tables.safety import LIKELY
 from snooker_env import SnookerVectorEnv
 from snooker_env.game import layouts
 from snooker_env.game.balls import GREEN, SPOTS, YELLOW
-from snooker_env.game.banks import BANKS, bank, split_bank
+from snooker_env.game.layouts import BANKS, bank, split_bank
 from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES

@@ -3,20 +3,17 @@
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.game.balls import CUE, N_BALLS, NAMES, SPOTS, mask_of
+from snooker_env.game.balls import CUE, N_BALLS, NAMES, mask_of
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+from tests.game.geometry_cases import lie
 from tests.miss_paths import paths
 
 TABLE = sn.Table.preset("match")
 
 
 def scene(**places):
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    for name, place in places.items():
-        ball = 1 if name == "red" else NAMES.index(name)
-        positions[ball], on_table[ball] = place, True
-    return positions, on_table
+    return lie({1 if name == "red" else NAMES.index(name): place for name, place in places.items()})
 
 
 def first_met(positions, on_table, angles):

@@ -7,22 +7,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game import layouts
+from snooker_env.game import balls, layouts
 from snooker_env.game.apply_ruling import settle_table
-from snooker_env.game.balls import (
-    BLACK,
-    BLUE,
-    COLOURS_MASK,
-    GREEN,
-    PINK,
-    REDS_MASK,
-    YELLOW,
-    BallOn,
-    balls_on,
-    ids_of,
-    mask_of,
-    next_on,
-)
+from snooker_env.game.balls import BLACK, BLUE, COLOURS_MASK, PINK, YELLOW, BallOn, balls_on, ids_of, mask_of
 from snooker_env.game.fouls import RULE_FLAGS, Flag, Foul, Outcome, VisitEnd
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import FULL_TABLE, Situation, Stroke, judge
@@ -74,8 +61,8 @@ def test_penalties_of_a_push_and_of_seven_points():
 
 
 def test_what_auto_nominates():
-    assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).nominated == GREEN
-    assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).penalty == 4
+    assert rule("ANY_COLOUR", first=[YELLOW, balls.GREEN]).nominated == balls.GREEN
+    assert rule("ANY_COLOUR", first=[YELLOW, balls.GREEN]).penalty == 4
     assert_fair(rule("ANY_COLOUR", touching=BLUE), 0, "RED", False)
     assert rule("ANY_COLOUR", touching=BLUE, first=PINK).nominated == PINK
     assert rule(free_ball=True, first=BLUE).nominated == BLUE
@@ -89,7 +76,9 @@ def test_what_auto_nominates():
 def strokes(draw):
     on_table = draw(st.integers(0, FULL_TABLE)) & ~1
     possible = [
-        on for on in BallOn if on >= 0 and balls_on(on, on_table) and not (on > 1 and on_table & REDS_MASK)
+        on
+        for on in BallOn
+        if on >= 0 and balls_on(on, on_table) and not (on > 1 and on_table & balls.REDS_MASK)
     ]
     assume(possible)
     ball_on = draw(st.sampled_from(possible))
@@ -115,10 +104,10 @@ def test_invariants(case):
     assert verdict.respotted & ~COLOURS_MASK == 0 and verdict.respotted & ~verdict.on_table == 0
     gone = situation.on_table & ~verdict.on_table
     assert gone & ~(stroke.potted | stroke.off) == 0 or verdict.over
-    assert not verdict.on_table & REDS_MASK & (stroke.potted | stroke.off)
+    assert not verdict.on_table & balls.REDS_MASK & (stroke.potted | stroke.off)
     if verdict.fouls and verdict.outcome == Outcome.PLAYING:
         assert verdict.on_table & COLOURS_MASK == (situation.on_table & COLOURS_MASK)
-        assert verdict.ball_on == next_on(verdict.on_table)
+        assert verdict.ball_on == balls.next_on(verdict.on_table)
     assert verdict.over == (verdict.ball_on == BallOn.NOTHING)
     assert bool(verdict.stays) == (verdict.points > 0 and verdict.outcome == Outcome.PLAYING)
     if (stroke.potted | stroke.off) & 1:

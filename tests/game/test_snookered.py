@@ -5,9 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import BLACK, SPOTS, YELLOW, mask_of
+from snooker_env.game.balls import BLACK, mask_of
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS
+from tests.game.geometry_cases import lie
 from tests.miss_paths import paths
 
 R = BALL_RADIUS
@@ -15,12 +16,10 @@ R = BALL_RADIUS
 
 def table(cue, reds, others=()):
     """Arrays and the mask on: reds are on, the others (from black down) are not. ``cue`` None is in hand."""
-    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
-    for ball, place in [*zip(range(1, 16), reds), *zip(range(BLACK, YELLOW - 1, -1), others)]:  # noqa: B905
-        positions[ball], on_table[ball] = place, True
-    if cue is not None:
-        positions[0], on_table[0] = cue, True
-    return positions, on_table, mask_of(range(1, 1 + len(reds)))
+    places = {1 + k: place for k, place in enumerate(reds)} | {
+        BLACK - k: place for k, place in enumerate(others)
+    }
+    return *lie(places | ({} if cue is None else {0: cue})), mask_of(range(1, 1 + len(reds)))
 
 
 def snookered(*args, **options):

@@ -4,19 +4,10 @@ import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import (
-    BLACK,
-    CLEARANCE,
-    GREEN,
-    NAMES,
-    REFEREE_TOUCH,
-    SPOTS,
-    YELLOW,
-    mask_of,
-)
+from snooker_env.game.balls import BLACK, CLEARANCE, GREEN, NAMES, REFEREE_TOUCH, SPOTS, YELLOW, mask_of
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks.stroke import touching_balls
-from tests.game.geometry_cases import misplaced, spot_colours
+from tests.game.geometry_cases import lie, misplaced, spot_colours
 from tests.kernels import from_python
 
 SIX = range(YELLOW, BLACK + 1)
@@ -25,10 +16,7 @@ touching = from_python(touching_balls)
 
 def table(*places):
     """A table with a red at each place."""
-    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
-    for red, place in enumerate(places, start=1):
-        positions[red], on_table[red] = place, True
-    return positions, on_table
+    return lie(dict(enumerate(places, start=1)))
 
 
 @settings(max_examples=60, deadline=None)
@@ -70,10 +58,7 @@ def crowded(draw):
         if all(np.hypot(place[0] - x, place[1] - y) >= 2 * BALL_RADIUS for x, y in places):
             places.append(place)
     balls = [0, *range(1, 16), *(i for i in SIX if i not in waiting)]
-    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
-    for ball, place in zip(balls, places, strict=False):
-        positions[ball], on_table[ball] = place, True
-    return positions, on_table, waiting
+    return *lie(dict(zip(balls, places, strict=False))), waiting
 
 
 @settings(max_examples=150, deadline=None)

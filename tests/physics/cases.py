@@ -1,5 +1,4 @@
-"""Which impacts are tested? Seeded random ones over everything that the models claim to cover, and the ones
-that trip solvers."""
+"""Which impacts are tested? Seeded random ones over everything that the models claim to cover, and the ones that trip solvers."""
 
 import numpy as np
 
@@ -43,8 +42,7 @@ def impacts(n, seed):
 
 
 def cushion_impacts(n, seed):
-    """n ball-cushion impacts as dicts (v, w, normal, e, mu_w, mu_s): rolling, draw, side, grazing,
-    perpendicular."""
+    """n ball-cushion impacts as dicts (v, w, normal, e, mu_w, mu_s): rolling, draw, side, grazing, perpendicular."""
     rng = np.random.default_rng(seed)
     out = []
     for k in range(n):

@@ -1,5 +1,4 @@
-"""Does a lone ball move as the closed forms say? Slide, roll, spin, curve; the cue; positions between
-events."""
+"""Does a lone ball move as the closed forms say? Slide, roll, spin, curve; the cue; positions between events."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""Does a ball that lies at a nose, an arc or a facing stay on the table, whatever its spin? And what is said
-of one that does not?"""
+"""Does a ball that lies at a nose, an arc or a facing stay on the table, whatever its spin? And what is said of one that does not?"""
 
 import numpy as np
 import pytest
@@ -25,8 +24,7 @@ ONCE_LOST = {
         (-114.81115743507378, -65.3133852508739, 72.06993360002431),
     ),
 }
-"""States of contact, each with its table. The first ball once went 16 cm deep into the cushion and came out
-again, the second 1.6 mm."""
+"""States of contact, each with its table. The first ball once went 16 cm deep into the cushion and came out again, the second 1.6 mm."""
 
 
 def depth(table, place, R):
@@ -57,8 +55,7 @@ def test_a_ball_in_contact_is_handed_from_one_piece_of_the_cushion_to_the_next(c
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom", "rectangle"])
 def test_balls_held_at_the_boundary_keep_every_law(name):
-    """At noses, arcs, facings and their seams, at rest or slow, with any spin: four batches of the fuzz's scene, 800 shots
-    a table."""
+    """At noses, arcs, facings and their seams, at rest or slow, with any spin: four batches of the fuzz's scene, 800 shots a table."""
     for k in range(4):
         rng = np.random.default_rng([77, k])
         table = fuzz.rectangle(rng) if name == "rectangle" else Table.preset(name)
@@ -97,8 +94,7 @@ def test_a_ball_that_leaves_the_table_is_an_error():
     ],
 )
 def test_wherever_a_ball_has_gone_astray_the_next_event_finds_it(name, place):
-    """In a nose, an arc, a facing, outside: put there behind the back of every check, moving and at rest
-    after it."""
+    """In a nose, an arc, a facing, outside: put there behind the back of every check, moving and at rest after it."""
     table = Table.preset(name)
     physics = sn.Physics.preset("match", **table.ball)
     state = [np.array([a]) for a in ([place], [(1e-3, 1e-3)], [(0.0, 0.0, 0.0)], [True])]

@@ -7,22 +7,13 @@ import snooker_env as sn
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics import cue_room
 from snooker_env.physics.cue import MAX_ELEVATION
-from snooker_env.physics.cue_room import (
-    FREE,
-    MOVED,
-    OVER_NOTHING,
-    OVER_RAIL,
-    RAISED,
-    STEEPEST,
-    UNPLAYABLE,
-    rails_of,
-)
+from snooker_env.physics.cue_room import FREE, MOVED, OVER_NOTHING, OVER_RAIL, RAISED, STEEPEST, UNPLAYABLE
 from tests.kernels import from_python
 from tests.oracles import cue_clearance
 
 _LEAST, _IN_ROOM = from_python(cue_room.least_elevation), from_python(cue_room.in_room)
 TABLE = sn.Table.preset("match")
-RAILS = rails_of(TABLE.noses, TABLE.falls)
+RAILS = cue_room.rails_of(TABLE.noses, TABLE.falls)
 ALONE = np.ones(1, bool)
 NONE = np.empty(0)
 

@@ -44,7 +44,6 @@ def rebound(physics, speed, direction, rolling, fidelity="reference"):
 
 
 # the law
-# ------------------------------------------------------------------------------------------------------------
 
 
 @some
@@ -65,7 +64,6 @@ def test_the_law_is_what_the_text_says():
 
 
 # the whole impact
-# ------------------------------------------------------------------------------------------------------------
 
 
 @some
@@ -79,8 +77,7 @@ def test_the_rebound_rises_with_speed(law, cushion, direction, rolling):
 
 
 def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_allows():
-    """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5,
-    0.45, 0.5), e about 0.1."""
+    """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5, 0.45, 0.5), e about 0.1."""
     rng, largest = np.random.default_rng(8), 0.0
     for k in range(4000):
         least = 0.4 if k % 2 else 0.0

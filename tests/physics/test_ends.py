@@ -1,5 +1,4 @@
-"""How does a shot end, and what is at its ends? Rest for ever, spin that nothing stops, the fastest and
-slowest balls, no balls."""
+"""How does a shot end, and what is at its ends? Rest for ever, spin that nothing stops, the fastest and slowest balls, no balls."""
 
 import numpy as np
 import pytest
@@ -53,8 +52,7 @@ def test_without_spin_decay_a_shot_ends_when_nothing_moves_and_spin_stays():
 
 
 def test_the_fastest_and_the_slowest_balls():
-    """Shots at the bounds of speed and spin keep their energy and stay apart; a speed that no path shows does
-    not move a ball."""
+    """Shots at the bounds of speed and spin keep their energy and stay apart; a speed that no path shows does not move a ball."""
     rng = np.random.default_rng(3)
     for table in ("match", None):
         p = random_table(rng, 6)

@@ -251,8 +251,7 @@ def test_physics_cannot_be_changed_and_its_range_ends_are_allowed():
 
 
 def test_balls_off_the_table_may_lie_anywhere():
-    """What is not on the table is not looked at: no overlap, no place is wrong for it, and it stays where it
-    is."""
+    """What is not on the table is not looked at: no overlap, no place is wrong for it, and it stays where it is."""
     places, v = [(0.0, 0.0), (0.0, 0.0), (5.0, 5.0)], [(0.0, 1.0), (9.0, 0.0), (0.0, 0.0)]
     shot = sn.simulate(places, v, np.zeros((3, 3)), on_table=[True, False, False])
     assert shot.positions[1:].tolist() == [[0.0, 0.0], [5.0, 5.0]]

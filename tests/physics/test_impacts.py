@@ -1,5 +1,4 @@
-"""Is one impact right? An independent oracle, published throw, invariants, and the cases
-that trip solvers."""
+"""Is one impact right? An independent oracle, published throw, invariants, and the cases that trip solvers."""
 
 import numpy as np
 import pytest
@@ -42,12 +41,10 @@ def energy(v, w):
 
 
 # the paper's scheme
-# ------------------------------------------------------------------------------------------------------------
 
 
 def test_euler_converges_to_reference_at_first_order():
-    """The error falls tenfold from N to 10 N, seen over many impacts (a single one jumps with where the last
-    step falls)."""
+    """The error falls tenfold from N to 10 N, seen over many impacts (a single one jumps with where the last step falls)."""
     cases = impacts(60, seed=3)
     errors = []
     for n in (100, 1000, 10000):
@@ -58,7 +55,6 @@ def test_euler_converges_to_reference_at_first_order():
 
 
 # the oracle
-# ------------------------------------------------------------------------------------------------------------
 
 
 def truth_of(case, mu_bb):
@@ -78,8 +74,7 @@ def test_two_balls_part_as_the_oracle_says():
 
 @pytest.mark.parametrize("preset", ["paper", "match"])
 def test_standard_keeps_its_promise_on_many_impacts(preset):
-    """Against ``reference``, itself held to the oracle above: 3,000 impacts, both balls moving in a third of
-    them."""
+    """Against ``reference``, itself held to the oracle above: 3,000 impacts, both balls moving in a third of them."""
     physics = sn.Physics.preset(preset)
     both = ((c, play(c, "standard", physics), play(c, "reference", physics)) for c in impacts(3000, seed=11))
     errors = [worst(got, want, speed_of(c)) for c, got, want in both]
@@ -124,7 +119,6 @@ def test_cushion_agrees_with_the_oracle():
 
 
 # published numbers
-# ------------------------------------------------------------------------------------------------------------
 
 CUTS = (5, 10, 15, 20, 25, 30, 35, 40, 50, 60, 70, 80)
 THROW = {
@@ -151,8 +145,7 @@ def test_fast_is_the_closed_form_of_tp_a14(kind, speed):
 @pytest.mark.parametrize("speed", [0.01, 1.0, 20.0])
 @pytest.mark.parametrize("fidelity", ["standard", "reference", "euler:100000"])
 def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
-    """0.9107 V at every speed: the slip at the nose reverses, which "no friction at zero slip" would miss
-    (0.946 V)."""
+    """0.9107 V at every speed: the slip at the nose reverses, which "no friction at zero slip" would miss (0.946 V)."""
     v, _ = sn.collide_cushion((0, speed, 0), (-speed / R, 0, 0), (0, 1, 0), sn.Physics(mu_s=mu_s), fidelity)
     assert v[1] == pytest.approx(-ratio * speed, rel=2e-5)
     assert v[0] == 0.0
@@ -168,7 +161,6 @@ def test_match_cushion_follows_the_measured_rebounds():
 
 
 # ends
-# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
@@ -215,8 +207,7 @@ def test_extreme_constants_end():
     ],
 )
 def test_a_ball_wedges_only_where_both_frictions_hold_it(mu_c, mu_s, sin_theta, wedged, fidelity):
-    """The nose's force goes through both contacts, half the nose's angle off each normal: both frictions must
-    reach its tangent."""
+    """The nose's force goes through both contacts, half the nose's angle off each normal: both frictions must reach its tangent."""
     half = np.tan(0.5 * (np.pi / 2 - np.arcsin(sin_theta)))
     assert wedged == (min(mu_c, mu_s) > half)
     physics = sn.Physics(mu_c=mu_c, mu_s=mu_s, sin_theta=sin_theta)

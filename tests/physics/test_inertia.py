@@ -1,5 +1,4 @@
-"""Are the constants of an impact those of rigid spheres? Derived again from Newton's and Euler's laws, and
-compared symbolically."""
+"""Are the constants of an impact those of rigid spheres? Derived again from Newton's and Euler's laws, and compared symbolically."""
 
 import pytest
 from sympy import Matrix, Rational, expand, nsimplify, simplify, solve, symbols
@@ -19,8 +18,7 @@ def python_of(function):
 
 
 class Sphere:
-    """A solid sphere, at rest before the impact. ``push``: an impulse per unit mass at the point R n of its
-    surface, n a unit vector."""
+    """A solid sphere, at rest before the impact. ``push``: an impulse per unit mass at the point R n of its surface, n a unit vector."""
 
     def __init__(self):
         self.v, self.w = Matrix([0, 0, 0]), Matrix([0, 0, 0])
@@ -48,8 +46,7 @@ def two_balls():
 
 
 def ball_and_nose():
-    """The contact R sin(t) above the centre. The ball's vertical velocity is Z, with the load N that this
-    takes."""
+    """The contact R sin(t) above the centre. The ball's vertical velocity is Z, with the load N that this takes."""
     from sympy import cos, sin
 
     ball = Sphere()

@@ -1,5 +1,4 @@
-"""Which laws hold for every impact, every phase on the cloth and every shot? Properties, tried on what
-hypothesis draws."""
+"""Which laws hold for every impact, every phase on the cloth and every shot? Properties, tried on what hypothesis draws."""
 
 import numpy as np
 import pytest
@@ -81,7 +80,6 @@ def far(got, want):
 
 
 # impacts of two balls
-# ------------------------------------------------------------------------------------------------------------
 
 
 @many
@@ -147,8 +145,7 @@ def test_an_impact_is_the_same_mirrored_turned_and_swapped(case, physics, fideli
     st.sampled_from([0.25, 2.0, 1024.0]),
 )
 def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
-    """With constant friction and restitution all speeds scale together: exactly, where k is a power of
-    two."""
+    """With constant friction and restitution all speeds scale together: exactly, where k is a power of two."""
     out = sn.collide_balls(*case, physics, fidelity)
     faster = sn.collide_balls(*(k * a for a in case[:-1]), case[-1], physics, fidelity)
     assert far(faster, [k * a for a in out]) <= 1e-12 * k * size_of(case)
@@ -157,8 +154,7 @@ def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
 @many
 @given(ball_impacts(), constants)
 def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
-    """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most
-    mu_s mu_bb of the impulse."""
+    """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most mu_s mu_bb of the impulse."""
     fast, standard, reference = (sn.collide_balls(*case, physics, f) for f in FIDELITIES)
     assert far(standard, reference) <= 1e-5 * size_of(case)
     if physics.mu_bb == 0:
@@ -166,7 +162,6 @@ def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
 
 
 # cushions
-# ------------------------------------------------------------------------------------------------------------
 
 
 @many
@@ -187,8 +182,7 @@ def test_a_cushion_takes_energy_gives_none_and_has_no_preferred_direction(case, 
 @many
 @given(nose_impacts(), st.floats(0, 1), st.sampled_from(FIDELITIES))
 def test_without_friction_a_cushion_returns_e_of_the_speed(case, e, fidelity):
-    """The nose pushes along its own slanted normal and the cloth holds the ball down: v n goes to -e v n,
-    nothing else changes."""
+    """The nose pushes along its own slanted normal and the cloth holds the ball down: v n goes to -e v n, nothing else changes."""
     v, w, n = case
     out = sn.collide_cushion(*case, {"mu_c": 0.0, "mu_s": 0.0, "e_c": e}, fidelity)
     # e near 0: the parting is a root of what is left of the work
@@ -197,7 +191,6 @@ def test_without_friction_a_cushion_returns_e_of_the_speed(case, e, fidelity):
 
 
 # the cloth
-# ------------------------------------------------------------------------------------------------------------
 
 
 @st.composite
@@ -234,15 +227,13 @@ def test_cloth_friction_brakes_along_the_slip_and_turns_the_ball_about_its_conta
 
 
 # whole shots
-# ------------------------------------------------------------------------------------------------------------
 
 PLACES = np.array([(0.0, 0.0), (0.3, 0.02), (0.45, -0.3), (-0.2, 0.5), (0.42, 0.045), (0.62, 0.3)])
 
 
 @st.composite
 def shots(draw, table=True, touching=True):
-    """positions, velocities, spins of 1 to 6 balls: apart, or (``touching``) some frozen to the one before;
-    the first is struck."""
+    """positions, velocities, spins of 1 to 6 balls: apart, or (``touching``) some frozen to the one before; the first is struck."""
     n = draw(st.integers(1, 6))
     shift = draw(st.tuples(st.floats(-0.2, 0.2), st.floats(-1.0, 1.0)))
     near = st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))
@@ -279,8 +270,7 @@ def in_play(shot, t):
     st.sampled_from([*FIDELITIES, "euler:1000"]),
 )
 def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
-    """Between and at events: no overlap, no energy gained, nobody off the table but through a pocket; at the
-    end everything rests."""
+    """Between and at events: no overlap, no energy gained, nobody off the table but through a pocket; at the end everything rests."""
     end = sn.simulate(*shot, table, physics, fidelity)
     times = np.union1d(end.events["time"], np.linspace(0, end.duration, 200))
     r, v, w = end.at(times)
@@ -313,15 +303,9 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
     st.sampled_from([0.0, 1e-12, 1e-9]),
 )
 def test_a_ball_held_by_its_spin_hops_at_the_spins_expense(angle, axis, spin, physics, table, gap):
-    """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no
-    hop gains energy."""
-    p = np.array(
-        [
-            (0.889 - R - gap, 0.5),
-            (0.889 - R - gap, 0.5)
-            - (np.nextafter(D, 1) + gap) * np.array([abs(np.cos(angle)), np.sin(angle)]),
-        ]
-    )
+    """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no hop gains energy."""
+    at, way = np.array([0.889 - R - gap, 0.5]), np.array([abs(np.cos(angle)), np.sin(angle)])
+    p = np.array([at, at - (np.nextafter(D, 1) + gap) * way])
     w = np.zeros((2, 3))
     w[0] = spin * np.array(axis)
     end = sn.simulate(p, np.zeros((2, 2)), w, table, physics)
@@ -384,7 +368,6 @@ def test_a_shot_stopped_and_started_again_goes_on_as_before(shot, at):
 
 
 # what the fuzz found
-# ------------------------------------------------------------------------------------------------------------
 
 UNSOLVED = """
 -0.0037727559465330724 0.33474473152165324 15.946283824890289 -3.103489430192995 -4.040993500703731 0 1 0.7

@@ -1,5 +1,4 @@
-"""Does a ball that rolls over the nap go where its equation of motion takes it? Against an independent
-integration of that equation."""
+"""Does a ball that rolls over the nap go where its equation of motion takes it? Against an independent integration of that equation."""
 
 import numpy as np
 import pytest

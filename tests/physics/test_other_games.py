@@ -1,5 +1,4 @@
-"""Are shots right on tables that are not snooker's? Every preset and some of one's own: pots by index,
-bounds, energy, their own balls."""
+"""Are shots right on tables that are not snooker's? Every preset and some of one's own: pots by index, bounds, energy, their own balls."""
 
 import numpy as np
 import pytest
@@ -41,8 +40,7 @@ def rolling(v, R):
 @pytest.mark.parametrize("speed", [0.7, 3.0])
 @pytest.mark.parametrize("name", WITH_POCKETS)
 def test_a_straight_roll_into_a_pocket_is_potted_there(name, speed):
-    """For every index: along the pocket's axis, from 0.3 m in front of the slate's edge, and 5 mm to either
-    side."""
+    """For every index: along the pocket's axis, from 0.3 m in front of the slate's edge, and 5 mm to either side."""
     table = TABLES[name]
     physics, names = physics_of(table), {"left": -1, "right": 1, "bottom": -1, "middle": 0, "top": 1}
     assert len(table.pockets) == len(table.falls)
@@ -57,8 +55,7 @@ def test_a_straight_roll_into_a_pocket_is_potted_there(name, speed):
 
 
 def random_shots(table, n_shots, n_balls, seed, top=6.0):
-    """Sound positions anywhere between the noses, mouths included; the first ball struck, some of the others
-    moving."""
+    """Sound positions anywhere between the noses, mouths included; the first ball struck, some of the others moving."""
     rng, physics = np.random.default_rng(seed), physics_of(table)
     high = table.bounds[:, 1] - physics.R
     positions = np.zeros((n_shots, n_balls, 2))
@@ -94,8 +91,7 @@ def test_no_shot_leaves_the_table_gains_energy_or_ends_where_no_ball_may_lie(nam
 
 @pytest.mark.parametrize("name", WITH_POCKETS)
 def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
-    """Soft shots at the pockets, many: some stop in the mouths. The positions are checked as input, those in
-    the pockets left out."""
+    """Soft shots at the pockets, many: some stop in the mouths. The positions are checked as input, those in the pockets left out."""
     table = TABLES[name]
     rng, physics = np.random.default_rng(2), physics_of(table)
     b = 3000
@@ -119,8 +115,7 @@ def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
 
 
 def test_snooker_is_played_on_a_rectangular_table_of_its_size():
-    """With the match table's pockets it is the match table, made for its ball or for any; without pockets
-    nothing is potted."""
+    """With the match table's pockets it is the match table, made for its ball or for any; without pockets nothing is potted."""
     ends = []
     own = (Table.rectangular(3.569, 1.778, ball_radius=radius) for radius in (None, 0.02625))
     for table in ("match", *own):

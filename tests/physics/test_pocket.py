@@ -1,5 +1,4 @@
-"""Does a ball over a pocket move as a free sphere does? One impact with a nose by small steps, one fall, and
-what once went wrong."""
+"""Does a ball over a pocket move as a free sphere does? One impact with a nose by small steps, one fall, and what once went wrong."""
 
 import numpy as np
 import pytest
@@ -17,8 +16,7 @@ NO_JAWS = np.zeros((0, 6))
 
 
 def by_small_steps(v, w, n, physics, steps=2000):
-    """Velocity and spin of a free sphere pressed on a fixed body at R n: normal impulse in equal parts,
-    Coulomb friction at each."""
+    """Velocity and spin of a free sphere pressed on a fixed body at R n: normal impulse in equal parts, Coulomb friction at each."""
     part = (1.0 + physics.e_j) * (v @ n) / steps
     for _ in range(steps):
         slip = v + np.cross(w, R * n)
@@ -46,8 +44,7 @@ def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
 
 
 def test_a_nose_does_not_pull():
-    """The ball falls away from the jaw's nose faster than it grazes towards it: it once took up to 29 % more
-    energy from it."""
+    """The ball falls away from the jaw's nose faster than it grazes towards it: it once took up to 29 % more energy from it."""
     strike, v, w, phys = from_python(free.against), (0.1, 0.9, -0.5), (1.0, 2.0, 3.0), sn.Physics().pack()
     assert strike(v, w, (0.8, 0.0, 0.6), phys[P_MU_C], phys[P_E_J], R) == (v, w)
     v = np.array([0.901733236439002, 0.4275468027601705])

@@ -14,8 +14,7 @@ quartic_crossing = from_python(roots.quartic_crossing)
 
 
 def numbers(low, high):
-    """Floats in which squares do not underflow, or 0: no speed or acceleration of a ball is smaller and not
-    nothing."""
+    """Floats in which squares do not underflow, or 0: no speed or acceleration of a ball is smaller and not nothing."""
     return st.floats(low, high).map(lambda x: 0.0 if abs(x) < 1e-100 else x)
 
 
@@ -41,8 +40,7 @@ def test_quartic_with_known_real_roots(roots, T, sign, scale):
 @settings(max_examples=300, deadline=None)
 @given(st.tuples(*[numbers(-10, 10)] * 5), st.floats(0.01, 3))
 def test_quartic_never_misses_a_sign_change(q, T):
-    """Where a dense sample sees the value fall through zero, a crossing there or before is found; and what is
-    found is one."""
+    """Where a dense sample sees the value fall through zero, a crossing there or before is found; and what is found is one."""
     got = quartic_crossing(*q, T)
     x = np.linspace(0, T, 2001)
     f = np.polyval(q, x)

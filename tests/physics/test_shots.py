@@ -1,5 +1,4 @@
-"""Is a whole shot right? Against an integrator of tiny steps, invariants after every event, and the shots
-that break other engines."""
+"""Is a whole shot right? Against an integrator of tiny steps, invariants after every event, and the shots that break other engines."""
 
 import hashlib
 
@@ -7,6 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from benchmarks import fuzz
 from snooker_env import EventKind, Table
 from snooker_env.game.balls import SPOTS
 from tests.flights import calm
@@ -66,7 +66,6 @@ def random_table(rng, n):
 
 
 # invariants
-# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference", "euler:50"])
@@ -129,7 +128,6 @@ def test_a_long_log_is_complete_in_both_calls():
 
 
 # contacts at gap zero
-# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-15, 1e-12, 1e-9])
@@ -179,8 +177,7 @@ MOUTH = (
 
 
 def test_a_ball_that_comes_out_of_a_middle_pocket_s_mouth_meets_the_nose():
-    """Struck off a jaw beyond the nose's line, then driven back into the cushion by its spin: it once went 17
-    mm into the nose."""
+    """Struck off a jaw beyond the nose's line, then driven back into the cushion by its spin: it once went 17 mm into the nose."""
     shot = sn.simulate(*MOUTH, physics={"e_b": 0.5, "e_c": 0.0, "mu_bb": 0.0, "spin_decel": 2.0})
     r = shot.at(np.linspace(0, shot.duration, 3000))[0][:, 0]
     along_the_nose = (np.abs(r[:, 1]) > 0.12) & (np.abs(r[:, 1]) < 1.65)
@@ -211,8 +208,7 @@ def test_a_ball_frozen_to_a_jaw(k):
 
 
 def test_two_balls_at_once_follow_the_written_rule():
-    """Ties: the lower ball first. Mirrored, the other one is first; both orders give nearly the mirrored
-    result."""
+    """Ties: the lower ball first. Mirrored, the other one is first; both orders give nearly the mirrored result."""
     p = np.array([(-0.3, 0.0), (0.0, R + 1e-4), (0.0, -R - 1e-4)])
     shot = sn.simulate(p, *struck(3, 2.0, 0.0), table=None)
     hits = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
@@ -222,12 +218,10 @@ def test_two_balls_at_once_follow_the_written_rule():
 
 
 # pockets
-# ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
-    """Found in random play: half a millimetre clear of the jaw and of the fall, 10.4 mm past the line of the
-    noses."""
+    """Found in random play: half a millimetre clear of the jaw and of the fall, 10.4 mm past the line of the noses."""
     place = (0.899444997865469, 0.03449467907672166)
     shot = sn.simulate([place, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
     assert shot.on_table.all() and tuple(shot.positions[0]) == place
@@ -235,3 +229,19 @@ def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
         says = r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"
         with pytest.raises(ValueError, match=says):
             sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize(
+    ("number", "index", "why"),
+    [
+        (4770, 114, "it lay in a mouth narrower than a ball, behind the ends of both jaws"),
+        (4030, 64, "a ball held by edge and jaw met another at once, without end"),
+        (4030, 134, "the same"),
+    ],
+)
+def test_a_shot_at_which_the_fuzz_of_a_million_once_failed_comes_to_rest(number, index, why):
+    drawn = fuzz.batch(6, number)
+    places, velocities = (part[index] for part in drawn.states())
+    world = drawn.spins[index], drawn.table, drawn.physics, "standard"
+    shot = sn.simulate(places, velocities, *world, max_events=40_000)
+    assert shot.duration > 0.0, why

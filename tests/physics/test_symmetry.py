@@ -1,5 +1,4 @@
-"""Is a mirrored shot the mirror image to the last bit? On a preset table and on unbounded cloth, in both
-axes."""
+"""Is a mirrored shot the mirror image to the last bit? On a preset table and on unbounded cloth, in both axes."""
 
 import numpy as np
 import pytest
@@ -58,8 +57,7 @@ def one_shot(p, v, w, physics, fidelity="standard"):
 
 
 def test_shots_that_once_differed():
-    """A jaw found with the time of another jaw as its limit, or a fall; a polynomial with -0.0 where its
-    image has 0.0: by 3e-13 m."""
+    """A jaw found with the time of another jaw as its limit, or a fall; a polynomial with -0.0 where its image has 0.0: by 3e-13 m."""
     rack, v, w = SPOTS.copy(), np.zeros((22, 2)), np.zeros((22, 3))
     rack[0], v[0] = (0.1, -1.3), (-0.061457985580204356, 1.655226055840073)
     w[0] = -48.51082848359777, -37.101183069595784, 32.11365387724147

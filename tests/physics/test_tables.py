@@ -1,5 +1,4 @@
-"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it
-is played with."""
+"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it is played with."""
 
 import copy
 import pickle
@@ -18,13 +17,9 @@ NONE = {"jaws": np.zeros((0, 6)), "falls": np.zeros((0, 3))}
 
 def walls(left, right, bottom, top, name="mine"):
     """Four straight noses, no pockets."""
-    noses = [
-        (0, -1, -left, bottom, top),
-        (0, 1, right, bottom, top),
-        (1, -1, -bottom, left, right),
-        (1, 1, top, left, right),
-    ]
-    return Table(name, np.array(noses), **NONE)
+    sides = (0, -1, -left, bottom, top), (0, 1, right, bottom, top)
+    ends = (1, -1, -bottom, left, right), (1, 1, top, left, right)
+    return Table(name, np.array([*sides, *ends]), **NONE)
 
 
 COPIES = {

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from snooker_env import Physics, SnookerEnv
+from snooker_env import Physics, SnookerEnv, strike
 from snooker_env.geometry import BALL_RADIUS as R
-from snooker_env.physics.cue import strike
 from snooker_env.tasks.noise import LEVELS, Noise, chance_within, execute_stroke
 from tests.kernels import from_python
 from tests.tables import after_strike, begun

@@ -9,8 +9,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv, Table
-from snooker_env.game.banks import bank, split_bank
-from snooker_env.game.layouts import LAYOUTS, deal_tables
+from snooker_env.game.layouts import LAYOUTS, bank, deal_tables, split_bank
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.options import fit_plan
 from tests.refusals import refused
