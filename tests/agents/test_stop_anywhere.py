@@ -62,7 +62,10 @@ def small(monkeypatch):
     monkeypatch.setattr(learn_strokes, "LAST_PASSES", {"visits": 3, "frames": 3})
 
 
-@pytest.mark.parametrize("name", TRAININGS)
+LONG = ("expert iteration", "strokes", "worth")
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in LONG)) for n in TRAININGS])
 def test_stopped_anywhere_it_goes_on_with_the_same_bits(name, tmp_path, monkeypatch, capsys):
     start, go_on, learned, rounds = TRAININGS[name]
     assert start(tmp_path / "whole") == 0

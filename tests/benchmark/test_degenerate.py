@@ -36,6 +36,7 @@ def test_strokes_are_what_their_names_say():
     assert np.allclose(np.cos(played["softest_away"][3] - np.pi / 2), 1.0)  # away from the blue
 
 
+@pytest.mark.slow
 def test_a_foul_on_purpose_is_worse_than_any_try():
     """It was worth as much as the best player's safety, while the episode ended with it."""
     training, seeds = replace(SAFETY, judged_layout="safety"), list(range(30))

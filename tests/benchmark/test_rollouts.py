@@ -86,6 +86,7 @@ def test_a_player_plays_alike_however_actions_are_read_and_whatever_is_seen():
     assert played[0] == played[1] == played[2] and sum(played[0]) > 0
 
 
+@pytest.mark.slow
 def test_no_table_comes_twice_or_mirrored():
     seeds = tables_of("held_out", 100)
     assert seeds == tuple(sorted(set(seeds))) and seeds[0] == HELD_OUT_SEED

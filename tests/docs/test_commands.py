@@ -35,6 +35,7 @@ SLOW = {"results/make_pictures.py", "tests/advice/coach.py"} | {
     for name in [
         "coach",
         "make_tables",
+        "page",
         "pockets",
         "scene",
         "speed",

@@ -1,6 +1,7 @@
 """Do the paths of the miss rule end at cushions? Shots that the physics really plays are the judge."""
 
 import numpy as np
+import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import CUE, N_BALLS, NAMES, mask_of
@@ -50,6 +51,7 @@ def in_mouths_and_at_rails(rng):
         return place
 
 
+@pytest.mark.slow
 def test_paths_agree_with_rolled_balls():
     """Near rails and pockets, two balls between; 300 directions, then 6,000, over the target."""
     rng, met = np.random.default_rng(8), {"any": 0, "full": 0, "barred": 0, "partly": 0, "by cushions": 0}

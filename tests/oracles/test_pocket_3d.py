@@ -22,6 +22,7 @@ def starts(index, offsets, degrees, away, speed, rolling):
     return strokes(alone(MATCH, index), np.array(offsets), angles, away, speed, rolling, False, PHYSICS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("index", "speed"), [(MIDDLE, 1.0), (CORNER, 4.0)])
 def test_half_the_step_gives_the_same_path(index, speed):
     m = stiff(speed)

@@ -107,6 +107,7 @@ def test_a_ball_that_the_nap_presses_along_a_cushion_stays_within_a_millimetre_o
         assert off.min() > -1e-9 and off.max() < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("field", [{"nap": 0.003}, {"roll_drag": 0.03}, {}])
 def test_a_solved_aim_allows_for_nap_and_drag(field):
     """A slow pot across the table into a middle pocket."""

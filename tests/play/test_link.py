@@ -125,6 +125,7 @@ def test_a_free_ball_that_was_declined_is_declined_again():
     assert scores == {AUTO: (1, 0), DECLINED: (1, 0), PINK: (0, 4)}
 
 
+@pytest.mark.slow
 def test_sixty_strokes_have_less_than_two_kilobytes():
     for seed in range(3):
         session = anything(seed, acts=400, agreed=True)

@@ -300,6 +300,7 @@ def test_the_end_of_a_frame_is_seen(shown):
     assert shown.page.get_attribute("#last", "class") != "trouble"
 
 
+@pytest.mark.slow
 def test_two_agents_play_on_by_themselves_until_paused(shown):
     """Each stroke is seen before the other agent plays; Pause stops them, Continue lets them play on."""
     shown.set_up(EASY)
@@ -496,6 +497,7 @@ def test_six_red_and_the_shoot_out_are_played_on_the_page(shown):
     shown.line("api/new", {"layout": "break_off", "game": "snooker"})
 
 
+@pytest.mark.slow
 def test_a_drill_counts_and_keeps_its_best(shown):
     shown.set_up(EASY)
     shown.page.click("#drills summary")
@@ -675,6 +677,7 @@ def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chro
     line("api/players", PERSONS)
 
 
+@pytest.mark.slow
 def test_a_shot_clock_plays_the_stroke_as_it_is_aimed(shown):
     shown.set_up(EASY)
     assert not shown.page.is_visible("#clock")
@@ -701,6 +704,7 @@ def test_the_page_is_small(line):
     assert len(files) == len(names) and sum(map(len, files)) < 170_000
 
 
+@pytest.mark.slow
 def test_a_friend_plays_from_a_phone_and_a_third_person_watches(chromium):
     with served("127.0.0.1") as line:
         line.server.service.seats.sit(["person", "ghost_ball"])

@@ -36,6 +36,7 @@ def test_the_object_line_goes_where_the_ball_goes(shown, stroke):
     assert abs(atan2(to_y - y, to_x - x) - centres) > 0.02  # else there was no throw to see
 
 
+@pytest.mark.slow
 def test_on_a_phone_a_hint_covers_nothing_of_the_table(chromium, line):
     shown = Shown(chromium, line, **PHONE)
     shown.set_up(CUT)
@@ -115,6 +116,7 @@ def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):
     shown.close()
 
 
+@pytest.mark.slow
 def test_loupe_and_tutorial_keep_off_what_matters(chromium, line):
     """The loupe stays in its corner until something is there, and lies on neither cue ball, contact nor object line."""
     shown = Shown(chromium, line, **PHONE)
@@ -159,6 +161,7 @@ def seen(shown, name):
 CONTROLS = ("dial", "fine", "speed", "play", "advise")
 
 
+@pytest.mark.slow
 def test_a_phone_shows_the_table_and_the_controls_of_the_stroke(chromium, line):
     """Upright, turned and turned back; in the tutorial, in set up, and while a stroke moves."""
     shown = Shown(chromium, line, viewport={"width": 390, "height": 844}, has_touch=True)
@@ -196,6 +199,7 @@ LATE = """void (fetched => window.fetch = async (what, ...more) => {
 """The answer of ``api/players`` comes a second late, after the state that it leads to."""
 
 
+@pytest.mark.slow
 def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     shown.set_up(EASY)
     before = {"players": ["person", "ghost_ball"], "noise": ["none", "beginner"], "practice": False}

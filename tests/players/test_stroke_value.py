@@ -32,12 +32,14 @@ def test_without_a_pot_it_plays_as_ghost_ball():
     assert np.array_equal(player.rank(at, [3])[0].strokes.values, wanted)
 
 
+@pytest.mark.slow
 def test_it_makes_more_than_players_that_see_no_position():
     """On 96 tables that no training has met; the means have errors of about 2 and 0.7 points."""
     mine, other = (summary(play_visits(name, 96, layout="opened")) for name in ("stroke_value", "ghost_ball"))
     assert mine["points_a_visit"] > 3.0 * other["points_a_visit"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("frame_rounds", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     whole = tmp_path / "whole"

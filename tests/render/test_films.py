@@ -70,6 +70,7 @@ def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):
         assert np.array_equal(film.at(t).ghosts, places[:count])
 
 
+@pytest.mark.slow
 def test_a_ball_that_rolls_and_spins_turns_about_both():
     """Against a marked point of it, carried along in tiny steps: p' = w x p."""
     R = BALL_RADIUS

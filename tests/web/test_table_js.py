@@ -85,6 +85,7 @@ def test_the_file_is_small_and_loads_nothing():
     assert "</script" not in source
 
 
+@pytest.mark.slow
 def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
     rng = np.random.default_rng(16)
     made = shots(102, rng)

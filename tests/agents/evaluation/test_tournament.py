@@ -69,6 +69,7 @@ def test_the_simulated_shots_of_each_player_are_counted(tmp_path):
     assert plain["shots"] == 0 and 0.9 * 8 < searches["shots"] / searches["decisions"] <= 8
 
 
+@pytest.mark.slow
 def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, parts):
     whole = played(tmp_path, name="whole.json")
     with monkeypatch.context() as patch:

@@ -112,6 +112,7 @@ def test_of_a_frame_against_another_only_ones_own_strokes_are_learned_from(other
     assert rows["worth"][first][0] == alone["worth"][mine][0]
 
 
+@pytest.mark.slow
 def test_a_network_learns_what_it_is_told_beside_the_value():
     rng = np.random.default_rng(0)
     seen = rng.standard_normal((16_000, SIZE)).astype(np.float32)

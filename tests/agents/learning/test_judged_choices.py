@@ -114,6 +114,7 @@ def test_half_of_the_tries_are_the_best():
     assert there[4, :half].all() and set(picks[4][there[4]]) <= set(range(STROKES // 2))
 
 
+@pytest.mark.slow
 def test_the_pupil_becomes_the_softmax_of_worths():
     """One round of positions with made-up worths, learned by heart."""
     venv = opened(4)

@@ -76,6 +76,7 @@ def test_a_lock_ends_with_its_process(other, tmp_path):
     lock.Lock(tmp_path).release()
 
 
+@pytest.mark.slow
 def test_what_a_killed_run_left_is_no_other_run(tmp_path, refused):
     left = ("train.lock", f".checkpoint.{16 * '0'}.tmp.pkl", f".model.{16 * 'f'}.tmp.zip")
     for name in left:

@@ -84,6 +84,7 @@ def test_the_targets_recomputed():
     assert reached[1].any()  # a correction reaches two rounds back
 
 
+@pytest.mark.slow
 def test_the_network_learns_a_known_value():
     """Strokes that end the visit: one feature says if they bring 7 points or 1, a second how many score.
 
