@@ -84,7 +84,8 @@ class SnookerVecEnv(VecEnv):
         known = (*self.tables.tables.reals, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
-        self.metadata, self._actions = self.tables.metadata, None
+        self.metadata = self.tables.metadata
+        self._actions: Any = None
         # rewards and steps so far: no state of a table holds them, save them with it
         self.episode_returns: Floats = np.zeros(num_envs)
         self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
