@@ -221,7 +221,7 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
         columns.draw(row, row[columns.STRIKER])
     mask = columns.strikeable(row, bits(on_table) & ~1)
     if row[columns.IN_HAND]:
-        put(positions, on_table, mask, frame and row[columns.ANYWHERE], rows, stream)
+        put(positions, on_table, mask, frame and row[columns.ANYWHERE] != 0, rows, stream)
     jitter, _ = pair(stream)
     failed = frame and row[columns.SAVED] != 0  # it plays from a position that has been restored
     drive = DRIVE if rules == SHOOT_OUT else 0.0

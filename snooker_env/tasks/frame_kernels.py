@@ -178,7 +178,8 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
         tables.nominated[k] = AUTO
         striker, free, points = row[columns.STRIKER], row[columns.FREE_BALL], row[columns.POINTS]
         stroke.write_ruling(seen, striker, ball_on, free, points, result)
-        effort = columns.Effort(seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH], seen[stroke.ATTEMPT])
+        reached = seen[stroke.CLEAR_PATH] != 0, seen[stroke.FULL_PATH] != 0, seen[stroke.ATTEMPT] != 0
+        effort = columns.Effort(*reached)
         lasted = int(1000.0 * shots.duration[j] + 0.5)
         columns.after_stroke(row, result, conditions, effort, setting.miss != columns.NO_MISSES, lasted)
         row[columns.STROKES] += 1
