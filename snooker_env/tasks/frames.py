@@ -129,7 +129,8 @@ class Frames(Tables):
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
         self.seats, rules, real = tuple(seats), self.rules, self.rules.cue == "real"
-        self.actions, self.noises = tuple(seat.actions for seat in seats), tuple(seat.noise for seat in seats)
+        self.actions: tuple[Actions | Choices, ...] = tuple(seat.actions for seat in seats)
+        self.noises: tuple[Noise, ...] = tuple(seat.noise for seat in seats)
         self._own = tuple((seat.actions.pack(), seat.noise.pack(BALL_RADIUS, real=real)) for seat in seats)
         self._errors = tuple(Errors.of(noise, rules.physics, rules.speeds) for noise in self.noises)
         # the winner of the lot is asked if either player can say who begins

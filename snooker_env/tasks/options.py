@@ -156,7 +156,7 @@ class Rules:
         return rails_of(self.table.noses, self.table.falls) if self.cue == "real" else NO_RAILS
 
 
-GROUPS = {
+GROUPS: dict[str, tuple[str, ...]] = {
     "task": ("task", "layout", "reward", "one_stroke", "opponent", "trust", "frames"),
     "action": ("action", "aim", "elevation", "placement", "says"),
     "view": ("observation", "speeds", "observe_conditions"),
