@@ -101,8 +101,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
-        turn = agent == self.agent_selection and not self.tables.are_over()[0]
         available = self.tables.action_masks(side=PLAYERS.index(agent))[0]
+        turn = agent == self.agent_selection and not self.tables.are_over()[0]
         return (available & turn).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:

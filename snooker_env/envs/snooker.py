@@ -1,5 +1,6 @@
 """What is ``Snooker-v0``? The Gymnasium environment of one table."""
 
+import copy
 from collections.abc import Sequence
 from typing import Any
 
@@ -69,7 +70,9 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     ):
         self.options, opponent = game_of(options, keywords)
         self.tables = tables_of(self.options, opponent, 1)
-        self.action_space: spaces.Space[Any] = self.options.rules.actions.space
+        self.action_space: spaces.Space[Any] = copy.deepcopy(
+            self.options.rules.actions.space
+        )  # with its own generator
         self.observation_space: spaces.Space[Any] = observation_space_of(self.options)
         self.render_mode = render_mode
         names = ("Agent",) if self.options.task == "visit" else ("Agent", "Opponent")

@@ -2,6 +2,7 @@
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
 
+import copy
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Literal
@@ -95,7 +96,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         limit = NEVER if max_episode_steps is None else max_episode_steps
         self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
         actions = self.tables.actions[0]
-        self.single_action_space: spaces.Space[Any] = actions.space
+        self.single_action_space: spaces.Space[Any] = copy.deepcopy(actions.space)  # with its own generator
         self.single_observation_space: spaces.Space[Any] = observation_space_of(self.options, actions)
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, n)
         self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, n)
@@ -111,6 +112,16 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _tables_of(self, opponent: object, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
+
+    @property
+    def positions(self) -> Floats:
+        """A copy of the balls' positions on every table, float64 (n, 22, 2) [m]."""
+        return self.tables.positions.copy()
+
+    @property
+    def on_table(self) -> Bools:
+        """A copy: which balls are on every table, bool (n, 22)."""
+        return self.tables.on_table.copy()
 
     # Gymnasium's interface
 

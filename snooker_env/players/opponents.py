@@ -46,8 +46,8 @@ class OpponentPool:
     """
 
     def __init__(self, members: Iterable[Member] | None = None, weights: Iterable[float] | None = None):
-        self.members: tuple[Member, ...] = ()
-        self.weights: tuple[float, ...] = ()
+        self._members: tuple[Member, ...] = ()
+        self._weights: tuple[float, ...] = ()
         listed = [] if members is None else list(members)
         if members is not None and not listed:
             allowed = "must hold one member at least; leave them out where add(...) follows"
@@ -60,18 +60,28 @@ class OpponentPool:
         if listed and not any(self.weights):
             raise refuse("weights", each, "must hold a number above 0: nobody could be drawn")
 
+    @property
+    def members(self) -> tuple[Member, ...]:
+        """The members, in the order in which they were added."""
+        return self._members
+
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """The weight of each member."""
+        return self._weights
+
     def add(self, member: Member, weight: float = 1.0) -> None:
         """Add a member, which later frames may draw; ValueError for a pool, or a weight below 0."""
         nobody = member is None or (isinstance(member, str) and member == "none")
         if nobody or isinstance(member, OpponentPool):
             raise refuse("member", member, "must be one opponent: a name or a player")
-        self.weights = (*self.weights, number("weight", weight, 0.0))
-        self.members = (*self.members, member)
+        new = number("weight", weight, 0.0)
+        self._members, self._weights = (*self._members, member), (*self._weights, new)
 
     def set_weight(self, index: int, weight: float) -> None:
         """Change the weight of ``members[index]``, 0: not drawn any more; ValueError for a bad number."""
         k = integer("index", index, 0, len(self.members) - 1)
-        self.weights = (*self.weights[:k], number("weight", weight, 0.0), *self.weights[k + 1 :])
+        self._weights = (*self.weights[:k], number("weight", weight, 0.0), *self.weights[k + 1 :])
 
 
 def draw_uniform(frames: Frames, which: Ints) -> Floats:

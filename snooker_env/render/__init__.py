@@ -1,4 +1,4 @@
-"""Pictures of a table. Public (``__all__``): its geometry and colours, for drawing with another library."""
+"""Pictures of a table. Public (``__all__``): the scene of a table, for drawing with another library."""
 
 from .outline import scene_data
 

@@ -22,13 +22,15 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "lamp": (255, 252, 240),
     "bar": (16, 20, 31),
     "bar_edge": (62, 70, 94),
+    "bar_accent": (196, 32, 48),
     "text": (240, 240, 236),
     "text_quiet": (164, 170, 184),
     "first": (44, 104, 180),
     "other": (178, 88, 14),
 }
 """Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth over a fall; ``nose``: the edge
-that balls meet; ``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar; ``first``, ``other``:
+that balls meet; ``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar; ``bar_accent``: marks
+on the pages; ``first``, ``other``:
 the two players' shares of the chance to win, light text on both."""
 
 COLOURS: Bytes = np.array(

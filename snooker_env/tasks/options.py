@@ -147,7 +147,7 @@ class Rules:
 
     @property
     def cue_row(self) -> Floats:
-        """The cue's row, of ``arrays.pack_cue``."""
+        """The cue's row, of ``kernel_arrays.pack_cue``."""
         return pack_cue(self.physics, self.rails)
 
     @property

@@ -199,7 +199,7 @@ class Tables(ABC):
 
     @property
     def arrays(self) -> tuple[Any, ...]:
-        """For kernels: the parts of ``arrays.TableArrays``, in a plain tuple."""
+        """For kernels: the parts of ``kernel_arrays.TableArrays``, in a plain tuple."""
         return self.positions, self.on_table, self.game, self.streams, self.nominated
 
     def seed(self, k: int, rng: np.random.Generator) -> None:

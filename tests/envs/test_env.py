@@ -177,3 +177,16 @@ def test_a_match_takes_them_too():
     env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
     assert env.action_space("player_0").shape == (4,)
     assert sn.match_env().action_space("player_0").shape == (7,)
+
+
+def test_recorders_film_a_picture_a_step(tmp_path):
+    env = gymnasium.wrappers.RecordVideo(
+        gymnasium.make("Snooker-v0", render_mode="rgb_array", one_stroke=True),
+        tmp_path / "films",
+        lambda _: True,
+    )
+    env.reset(seed=0)
+    env.step(env.action_space.sample())
+    pictures = len(env.recorded_frames)
+    env.close()
+    assert pictures == 2 and len(list(tmp_path.glob("films/*.mp4"))) == 1

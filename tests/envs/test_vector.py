@@ -85,6 +85,16 @@ def test_spaces_types_and_metadata(strict):
     gymnasium.wrappers.vector.RecordEpisodeStatistics(env).reset(seed=1)
 
 
+def test_tables_of_the_same_options_share_no_space_and_what_they_give_is_a_copy():
+    options = sn.Options()
+    one, other = SnookerVectorEnv(2, options), SnookerVectorEnv(2, options)
+    assert one.single_action_space is not other.single_action_space
+    assert SnookerEnv(options).action_space is not SnookerEnv(options).action_space
+    begun(one, 0)
+    one.positions[:], one.on_table[:] = 0.0, False
+    assert one.positions.any() and one.on_table.any()
+
+
 def test_it_must_be_reset_first():
     env = native(3)
     with pytest.raises(gymnasium.error.ResetNeeded):

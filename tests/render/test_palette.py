@@ -1,6 +1,8 @@
 """Do the colours stand out from the cloth and each other, by CIEDE2000, and does the JSON hold them all?"""
 
 import json
+import re
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -36,3 +38,12 @@ def test_the_json_is_the_table(name):
         assert max(y for _, y in data["lines"]["d"]) <= BAULK_Y + 1e-9
     else:
         assert data["lines"] is None
+
+
+def test_the_pages_draw_with_colours_that_exist():
+    """A name that is missing is drawn as nothing, without an error."""
+    web = files("snooker_env.replays") / "web" / "table"
+    drawn = "".join(file.read_text("utf-8") for file in web.iterdir() if file.suffix == ".js")
+    used = {*re.findall(r"\b(?:ink|colours)\.(\w+)", drawn)} - {"length", "slice"}
+    used |= {*re.findall(r"var\(--(\w+)\)", (web / "player.css").read_text("utf-8"))} - {"share"}
+    assert len(used) > 15 and used <= PALETTE.keys(), used - PALETTE.keys()

@@ -171,8 +171,13 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
     at = Positions.of([env.get_state() for env in states])
     lies = ({0: lie, 1: (0.0, 1.2)} for lie in at.positions[:, 0])
     wanted = np.stack([posed(lie, action="discrete").action_masks() for lie in lies])
-    free, real = action_masks(at), action_masks(at, rails=sn.Options(cue="real").rules.rails)
+    rails = sn.Options(cue="real").rules.rails
+    free, real = action_masks(at), action_masks(at, rails=rails)
     assert np.array_equal(real, wanted) and (free[0] != real[0]).any() and np.array_equal(free[1], real[1])
+    wrong: Any
+    for wrong in ("real", None, rails[1:], np.array([rails]), rails.astype(np.float32), np.full(6, np.nan)):
+        with pytest.raises(ValueError, match=r"^rails = .*must be Planner\.rules\.rails"):
+            action_masks(at, rails=wrong)
     player: Any = sn.player("random").at({"cue": "real"})
     scores = player.scores(at, np.array([1, 2]))
     assert np.array_equal(np.isfinite(scores), real)

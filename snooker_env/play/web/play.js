@@ -96,7 +96,10 @@ class Page {
     by("save").onclick = () => this.try(async () => { keep("snooker-game.txt", await this.share.link(), "text/plain"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
     by("load").onclick = () => by("file").click();
-    by("file").onchange = () => this.try(async () => { this.share.open(await by("file").files[0].text()); by("file").value = ""; });
+    by("file").onchange = () => this.try(async () => {
+      const [file] = by("file").files;
+      if (file) this.share.open(await file.text().finally(() => { by("file").value = ""; }));
+    });
     by("labels").checked = kept.get("labels", false);
     by("labels").onchange = () => { kept.set("labels", by("labels").checked); this.redraw(); };
     fill(by("rules"), this.games);
@@ -395,9 +398,12 @@ class Page {
   errors(who, own) { return this.levels.find(({ name }) => name === who)?.noise ?? (isPerson(who) ? own : "professional"); }
 
   /** Seat the chosen opponent; the person errs as before. */
-  level() {
-    const who = by("level").value, { players, noise } = this.state, own = noise[players.indexOf("person")] ?? "amateur";
-    if (who in this.menu) this.go("players", { players: ["person", who], noise: [own, this.errors(who, own)], practice: false });
+  async level() {
+    const who = by("level").value;  // read first: the end of a drill fills the list again
+    if (!(who in this.menu)) return;
+    await this.drills.stop();  // and gives the person's own errors back
+    const { players, noise } = this.state, own = noise[players.indexOf("person")] ?? "amateur";
+    await this.go("players", { players: ["person", who], noise: [own, this.errors(who, own)], practice: false });
   }
 
   /** Send the players, a new one with errors of its own. */
