@@ -155,6 +155,7 @@ def test_on_the_page_the_persons_strokes_alone_are_reviewed(seat):
     game.service.close()
 
 
+@pytest.mark.slow
 def test_the_command_prints_the_costliest_and_one_error(game, tmp_path, capsys):
     _, file, _ = game
     asked = f"review {file} --noise club --agent tactician_100 --samples 60 --seed 5".split()

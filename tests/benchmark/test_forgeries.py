@@ -221,6 +221,7 @@ def test_swapped_episodes_and_other_seeds(boxes):
     assert faults(later) == [says]
 
 
+@pytest.mark.slow
 def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves():
     """Of one row all columns are tried. What passes must be a field that the page calls unproved; none may be missing, none
     may be more."""

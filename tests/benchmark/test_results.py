@@ -110,6 +110,7 @@ def test_simulated_shots_are_counted():
     assert faults(record) == faults(frames) == []
 
 
+@pytest.mark.slow
 def test_tables_fit_100_columns(made, capsys):
     files = [str(file) for file in made.glob("*.json")]
     assert main(["table", *files]) == 0

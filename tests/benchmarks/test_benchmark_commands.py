@@ -72,6 +72,7 @@ def interrupted(process, seconds):
 STOPPED = "benchmarks.make_tables: interrupted"
 
 
+@pytest.mark.slow
 def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
     (made := tmp_path / "made").mkdir()
     # compiled first: a signal inside LLVM can end the process by a fault of its own
@@ -107,6 +108,7 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     assert re.search(says + r"\S.*\)\n$", err), err
 
 
+@pytest.mark.slow
 def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
     new = tmp_path / "new"
     code, out, err = ended(started("paper", "--out", new, "--json", new / "figures.json"))

@@ -49,6 +49,7 @@ def file(tmp_path, data):
     return path
 
 
+@pytest.mark.slow
 def test_the_command_finds_the_strikes(file, tmp_path, capsys):
     with saved_figures() as drawn:
         command.main([str(file), "--json", str(tmp_path / "figures.json"), "--out", str(tmp_path)])

@@ -39,16 +39,19 @@ RUNNER = """if True:
 CODE = {name: blocks(page.read_text(encoding="utf-8")) for name, page in zip(NAMES, PAGES, strict=True)}
 LONG, SHORT = "agent.learn(163_840)", "agent.learn(4_096)"
 """README's training: .ci/run trains as long, by README's main command."""
-WITH_CODE = [name for name, code in CODE.items() if code]
+WITH_CODE = [name for name, code in CODE.items() if code and name != "README.md"]
+GROUPS = {"README": ["README.md"], **{f"pages {k}": WITH_CODE[k::4] for k in range(4)}}
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="pages are run in copies of one process")
-@pytest.mark.parametrize("first", range(4))
-def test_python_blocks_run(first, tmp_path):
-    """Every fourth page."""
+@pytest.mark.parametrize(
+    "group", [pytest.param(n, marks=[pytest.mark.slow] * (n != "README")) for n in GROUPS]
+)
+def test_python_blocks_run(group, tmp_path):
+    """README, and every fourth page; .ci/run runs them all."""
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     env = os.environ | {"PYTHONPATH": path, "MPLBACKEND": "Agg", "SDL_VIDEODRIVER": "dummy"}
-    pages = {name: [code.replace(LONG, SHORT) for code in CODE[name]] for name in WITH_CODE[first::4]}
+    pages = {name: [code.replace(LONG, SHORT) for code in CODE[name]] for name in GROUPS[group]}
     text = {"input": json.dumps(pages), "text": True, "capture_output": True}
     done = subprocess.run(
         [sys.executable, "-c", RUNNER], cwd=tmp_path, env=env, timeout=900, check=False, **text

@@ -38,6 +38,7 @@ def test_a_short_run_writes_what_it_found(whole):
     assert 0.0 <= results["judged"]["ghost_ball"]["won"] <= 1.0
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_exactly(whole, short, tmp_path, monkeypatch):
     learn, rounds = self_play.Run._learn, []
 

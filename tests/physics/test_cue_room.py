@@ -34,6 +34,7 @@ def tip_of(rng):
     return far * np.cos(turn), far * np.sin(turn)
 
 
+@pytest.mark.slow
 def test_over_a_rail_as_spheres():
     rng, worst, steep = np.random.default_rng(0), 0.0, 0
     for _ in range(100):

@@ -189,6 +189,7 @@ def left_after(balls, on):
     return sum(8 if ball < 16 else ball - 14 for ball in balls if ball) + 7 * (on == "any colour")
 
 
+@pytest.mark.slow
 def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
     """Between two strokes the table is the one left by the first, with its score, break and reds."""
     shown.set_up(VISIT)
@@ -270,6 +271,7 @@ def test_the_bar_shows_who_is_likely_to_win_and_moves_with_the_strokes(shown):
     assert shown.page.is_visible("#win")
 
 
+@pytest.mark.slow
 def test_the_end_of_a_frame_is_seen(shown):
     """The winner, the score from the viewer's side, and the next frame, which the other breaks off."""
     shown.set_up(EASY, striker=1, scores=[0, 1])
@@ -374,6 +376,7 @@ def test_one_press_is_one_stroke(shown):
 ROOM = "page.room.found && !page.room.wait.busy && page.room.found"
 
 
+@pytest.mark.slow
 def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown):
     """A ball frozen to the cushion: raised over the rail, its tip moved, and free if the players choose so."""
     shown.set_up(FROZEN)
@@ -403,6 +406,7 @@ def test_the_page_says_and_draws_how_the_cue_finds_room_before_the_stroke(shown)
     assert -0.4 < mid < 0 and low != before
 
 
+@pytest.mark.slow
 def test_the_cue_is_pulled_back_and_let_go(shown):
     """The further, the harder; pushed back to the ball it is no stroke, and the power is as before."""
     shown.set_up(EASY)
@@ -429,6 +433,7 @@ def test_the_cue_is_pulled_back_and_let_go(shown):
     assert cue["speed"] == pytest.approx(wanted, abs=1e-3) and cue["aim"] == pytest.approx(pi / 2)
 
 
+@pytest.mark.slow
 def test_the_strip_aims_finely_and_says_how_full_the_ball_is_struck(shown):
     shown.set_up({"cue": [0.0, 0.0], "reds": [[0.0, 0.8]], "black": [0.0, 1.4605]})
     said = {}
@@ -474,6 +479,7 @@ def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line):
     shown.close()
 
 
+@pytest.mark.slow
 def test_six_red_and_the_shoot_out_are_played_on_the_page(shown):
     shown.set_up(EASY)
     shown.page.click("#start summary")
@@ -528,6 +534,7 @@ def test_a_drill_counts_and_keeps_its_best(shown):
     assert not shown.page.is_visible("#drill")
 
 
+@pytest.mark.slow
 def test_a_whole_replay_is_passed_on_as_a_link(shown):
     """It is shown from its first stroke, and gone on with; it meets the same errors as when it was played."""
     shown.set_up(VISIT)
@@ -615,6 +622,7 @@ def test_a_link_that_cannot_be_made_or_opened_is_refused_in_one_sentence(shown):
     shown.errors.clear()
 
 
+@pytest.mark.slow
 def test_a_friend_by_link_watches_the_visit_and_plays_the_other_seat(shown, chromium):
     """Begun, played and sent by one browser, opened and answered by another, which knows nothing of it; and opened again."""
     line = shown.line

@@ -257,6 +257,7 @@ def try_once(shown, n):
     shown.until("page.drills.tries > argument", n)
 
 
+@pytest.mark.slow
 def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):
     shown = Shown(chromium, line)
     shown.set_up(EASY)

@@ -100,6 +100,7 @@ def test_set_up_snaps_undoes_and_mirrors(shown):
     assert not shown("page.state.in_hand")
 
 
+@pytest.mark.slow
 def test_the_agent_that_was_named_stays_in_the_menu(chromium, line):
     seats = line.server.service.seats
     seats.opponents.insert(0, "planner")

@@ -27,6 +27,7 @@ def test_it_chooses_as_the_model_that_was_trained():
     assert np.array_equal(chosen, wanted) and masks[np.arange(60), chosen].all() and len(set(chosen)) > 10
 
 
+@pytest.mark.slow
 def test_it_makes_more_than_the_widest_pot():
     """On 96 tables; the means have errors of about 2 and 0.7 points."""
     mine, other = (summary(play_visits(name, 96, layout="opened")) for name in ("strokes", "ghost_ball"))

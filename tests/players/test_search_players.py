@@ -61,6 +61,7 @@ def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
         weights.learned_at("robot")
 
 
+@pytest.mark.slow
 def test_planner_search_best_pot_and_ghost_ball_make_points_in_this_order():
     players = map(sn.player, ("planner_60", "search_60", "best_pot_60", "ghost_ball"))
     points = [summary(play_visits(player, 60, threads=1))["points_a_visit"] for player in players]

@@ -66,6 +66,7 @@ def test_a_network_is_learned(tmp_path, capsys, frame_rounds):
     assert len(StrokeValuePlayer(learned).at(tables).play(tables, np.arange(8))) == 8
 
 
+@pytest.mark.slow
 def test_the_network_is_fitted_to_what_strokes_are_worth():
     rng = np.random.default_rng(1)
     seen = rng.normal(2.0, 3.0, (600, 6, SIZE)).astype(np.float32)

@@ -204,6 +204,7 @@ tempfile.mkstemp = full
 """
 
 
+@pytest.mark.slow
 def test_on_a_full_disk_it_works_from_memory(toy):
     out, err = toy(FULL)
     assert out == FRESH and not files(toy, "*.nb?")
@@ -213,6 +214,7 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
 
 
+@pytest.mark.slow
 def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy):
     with ThreadPoolExecutor(4) as pool:
         for out, err in pool.map(lambda _: toy(), range(4)):

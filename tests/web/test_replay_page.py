@@ -199,6 +199,7 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
 
 
+@pytest.mark.slow
 def test_nothing_overlaps_or_overflows_at_any_size(open_page):
     p = open_page()
     for width, height in SIZES:

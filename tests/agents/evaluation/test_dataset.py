@@ -133,6 +133,7 @@ def test_a_changed_number_is_found_when_episodes_are_played_again(tmp_path, caps
     assert dataset.differing(folder, 2) == ([], 2)
 
 
+@pytest.mark.slow
 def test_a_policy_is_cloned_from_one(tmp_path, monkeypatch):
     """The expert is one that a network can copy: it always plays the first pot at one speed."""
     pytest.importorskip("minari")

@@ -103,6 +103,7 @@ def test_ctrl_c_at_once_keeps_nothing(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "t.json").exists() and "nothing is kept" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_frames_do_not_depend_on_the_company(tmp_path):
     whole = played(tmp_path, name="a.json")
     pair = played(tmp_path, name="b.json", players=PLAYERS[:2])
@@ -135,6 +136,7 @@ def sound():
     return json.loads(json.dumps(found))
 
 
+@pytest.mark.slow
 def test_a_change_of_any_value_of_a_file_is_a_fault_but_for_what_nothing_proves(tmp_path, capsys):
     """None may be missing, none may be more."""
     record, passed = sound(), set()

@@ -81,6 +81,7 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
     assert not strokes and sum(r["fouls_first"] for r in rows) > 0 < sum(r["best_second"] for r in rows)
 
 
+@pytest.mark.slow
 def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeypatch):
     seeds = range(20, 28)
     want = play(ghost_ball(), softly(), seeds)

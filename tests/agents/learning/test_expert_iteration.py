@@ -51,6 +51,7 @@ def weights(model):
     return {name: tensor.clone() for name, tensor in model.policy.state_dict().items()}
 
 
+@pytest.mark.slow
 def test_both_networks_learn_and_the_seed_matters():
     before, after, run = a_run()
     moved = {name for name in after if not torch.equal(before[name], after[name])}

@@ -57,6 +57,7 @@ def test_rows_of_a_frame_follow_each_other():
     assert all(np.array_equal(rows[name], again[name]) for name in rows)
 
 
+@pytest.mark.slow
 def test_what_strokes_may_leave_is_judged_beside_the_frames():
     rows, alone = frames(SHARED | {"replies": True}, PART, 1), frames(SHARED, PART, 1)
     played = rows["striker"] >= 0

@@ -150,6 +150,7 @@ def test_no_gradient_is_left_behind():
     assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
 
 
+@pytest.mark.slow
 def test_learning_goes_on_from_a_saved_state_bit_for_bit():
     """Saved at every step of a cycle of refreshes; the state is a copy as soon as it is a file."""
     rng = np.random.default_rng(5)
