@@ -229,7 +229,7 @@ class Frame:
         for name in _TRUTHS:
             _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
-            raise refuse("scores", self.scores, "must be two integers")
+            raise refuse("scores", self.scores, "must be a tuple of two integers")
         scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
         _set(self, "scores", tuple(scores))
         _set(self, "on_table", _object_balls(self.on_table))

@@ -4,7 +4,7 @@ A stroke is five numbers in SI, see ``Planner``. What positions are worth is sai
 
 from ..tasks.pot_chance import RULE_OF_THUMB, SURE
 from ..tasks.threads import processors
-from .judges import FrameJudge, Judge, VisitJudge
+from .judges import FrameJudge, VisitJudge
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
@@ -17,7 +17,6 @@ __all__ = [
     "RULE_OF_THUMB",
     "SURE",
     "FrameJudge",
-    "Judge",
     "Outcomes",
     "Planner",
     "Position",

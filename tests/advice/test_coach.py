@@ -14,6 +14,7 @@ from snooker_env.tasks import LEVELS
 SEEN = {"seeds": (0,), "samples": 300}
 
 
+@pytest.mark.slow
 def test_there_are_twenty_and_no_pot_is_likely_in_any():
     assert len(CASES) == 20 and set(UNLIKE) <= set(CASES)
     for name, case in CASES.items():

@@ -61,6 +61,7 @@ def test_run_leaves_model_figures_and_curves(finished):
     )
 
 
+@pytest.mark.slow
 def test_its_last_words_give_each_part_its_own_time(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(expert_iteration, "POOL", 64)
     more = ["--agent", "ppo_value", "--imitate", "64", "--steps", "256", "--out"]

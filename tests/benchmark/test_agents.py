@@ -63,7 +63,7 @@ REFUSED = "which is refused: speed = 99: must be a finite number in [0.2, 7]"
         (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
         (f"{EACH}print({FAR}, flush=True)\n {GOOD}", REFUSED),
         (f"{EACH}print({NOMINATES}, flush=True)\n {GOOD}", "field = 'nominate': must be one of"),
-        (SLEEPS, "gave no stroke within 3 s"),
+        pytest.param(SLEEPS, "gave no stroke within 3 s", marks=pytest.mark.slow),
         (TWICE, "without a state: one line for each"),
         (
             f"{EACH}\n  while True: sys.stdout.write('x' * 9999)\n {GOOD}",

@@ -82,6 +82,7 @@ def test_the_name_of_a_known_player_for_other_strokes(name):
     assert first in faults(record)
 
 
+@pytest.mark.slow
 def test_a_decision_after_a_foul_that_the_player_does_not_make():
     """A safety of a planner that is fouled against, with another decision."""
     task = TASKS["SnookerSafety-v0"]

@@ -84,6 +84,7 @@ def test_figures_are_those_of_the_rows(made):
     assert never["high"] == pytest.approx(1 - 0.05 ** (1 / EPISODES)) == bound_if_none(EPISODES)
 
 
+@pytest.mark.slow
 def test_simulated_shots_are_counted():
     class Thinks(BoundPlayer):
         """Before each stroke: 7 shots on copies of each table, 3 by ``simulate``, and one batch of 5."""

@@ -42,7 +42,11 @@ def no_display(monkeypatch):
 
 @pytest.mark.parametrize(
     ("name", "render_mode"),
-    [(name, None) for name in IDS] + list(product(("Snooker-v0",), SHOWN)) + [("SnookerFrame-v0", "human")],
+    [
+        *((name, None) for name in IDS),
+        *product(("Snooker-v0",), SHOWN),
+        pytest.param("SnookerFrame-v0", "human", marks=pytest.mark.slow),
+    ],
 )
 @pytest.mark.parametrize(
     ("observation", "aim"), zip(observations.OBSERVATIONS, (*AIMS, "absolute", "pot"), strict=True)

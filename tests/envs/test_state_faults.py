@@ -279,7 +279,7 @@ miss(frame__saved__on_table=1 << 21, frame__saved__ball_on=7) | state.frame.save
 miss(frame__saved={}) | state.frame.saved | on_table | must have exactly the fields
 miss(frame__phase="lot") | state.frame.phase | lot | must
 miss(frame__scores=[0, 2**53]) | state.frame.scores[1] | 9007199254740992 | must be an integer in [0, 900719
-miss(frame__scores=[0, 1, 2]) | state.frame.scores | (0, 1, 2) | must be two integers
+miss(frame__scores=[0, 1, 2]) | state.frame.scores | (0, 1, 2) | must be a tuple of two integers
 miss(frame__failures=3) | state.frame.failures | 3 | must be an integer in [0, 2]
 miss(frame__break_points=20) | state.frame.break_points | 20 | must be
 miss(frame__warned=True) | state.frame.warned | True | must be False

@@ -53,7 +53,10 @@ def test_a_ball_in_contact_is_handed_from_one_piece_of_the_cushion_to_the_next(c
     table.check(shot.positions, R, on_table=shot.on_table)
 
 
-@pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom", "rectangle"])
+OTHERS = [pytest.param(name, marks=pytest.mark.slow) for name in ("tight", "uk8", "pool9", "carom")]
+
+
+@pytest.mark.parametrize("name", ["match", "rectangle", *OTHERS])
 def test_balls_held_at_the_boundary_keep_every_law(name):
     """At noses, arcs, facings and their seams, at rest or slow, with any spin: four batches of the fuzz's scene, 800 shots a table."""
     for k in range(4):

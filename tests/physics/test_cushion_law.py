@@ -76,6 +76,7 @@ def test_the_rebound_rises_with_speed(law, cushion, direction, rolling):
     assert (np.diff(out) > 0.0).all()
 
 
+@pytest.mark.slow
 def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_allows():
     """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5, 0.45, 0.5), e about 0.1."""
     rng, largest = np.random.default_rng(8), 0.0

@@ -459,6 +459,7 @@ def test_the_strip_aims_finely_and_says_how_full_the_ball_is_struck(shown):
     assert turned == pytest.approx(-50 * 0.01 * pi / 180, abs=1e-6)  # to the right, as the pointer
 
 
+@pytest.mark.slow
 def test_the_first_look_is_calm_and_the_tutorial_is_shown_once(chromium, line):
     shown = Shown(chromium, line, new=True)
     shown.line("api/new", {"layout": "break_off", "seed": 1})

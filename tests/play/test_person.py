@@ -292,6 +292,7 @@ def test_my_position_is_repeated_with_what_is_to_be_expected(chromium, line):
     shown.close()
 
 
+@pytest.mark.slow
 def test_the_position_of_the_day_is_the_same_for_everybody_and_counts_once(chromium, line):
     seen = []
     for seed in (1, 2):

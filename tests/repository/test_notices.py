@@ -68,6 +68,7 @@ def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     assert toys(code) == ""
 
 
+@pytest.mark.slow
 def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
     for quiet in ("1", "yes"):
         assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""

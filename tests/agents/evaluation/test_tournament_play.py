@@ -91,6 +91,7 @@ def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeyp
     assert play(ghost_ball(), softly(), list(seeds)[3:5]) == want[6:10]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("second", [ghost_ball, softly, partial(sn.player, "best_pot_8")])
 def test_the_order_of_the_players_does_not_matter(second):
     """Both are the agent in one frame on each seed."""
@@ -108,6 +109,7 @@ def test_the_order_of_the_players_does_not_matter(second):
     assert len({(r["points_first"], r["points_second"]) for r in one}) > 4
 
 
+@pytest.mark.slow
 def test_the_frames_of_a_match_are_broken_in_turn(strokes):
     rows = frames(play(ghost_ball(), softly(), [0, 1, 2], best_of=3))
     matches = {}

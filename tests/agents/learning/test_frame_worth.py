@@ -141,6 +141,7 @@ def test_the_chance_to_win_is_that_of_the_frames():
     assert calibration(np.full(n, 0.9), won)[1] > 0.2
 
 
+@pytest.mark.slow
 def test_frames_of_which_none_ends_are_refused(tmp_path, monkeypatch):
     """Nothing says who wins them."""
     short = {"cue": "real", "miss": "clear_path", "layout": "colours", "max_strokes": 3}
@@ -175,6 +176,7 @@ def test_a_teacher_is_heard_only_where_its_stroke_is_clearly_better():
     assert decided.strokes.values[:, 0].tolist() == [2.1, 2.0, 2.0, 2.0]
 
 
+@pytest.mark.slow
 def test_a_player_wins_all_frames_against_one_that_hardly_scores():
     share, error = frame_self_play.win_share(Tactician(30, (None, None)), sn.player("random"), 5, 4)
     assert share == 1.0 and error == 0.0
