@@ -1,12 +1,8 @@
-"""How large are the pockets' openings, and what passes them without touching a jaw?"""
+"""How large are the pockets' openings?"""
 
 from math import cos, sin, sqrt
 
 import numpy as np
-
-from snooker_env.physics.engine import EventKind
-
-from .windows import drops, play_strokes_at, strokes
 
 PUBLISHED = (
     "published: a match pocket is 3 1/2 in (88.9 mm) wide at the fall of the slate, a club pocket 3 5/8 in (92.1), a wide one\n"
@@ -63,45 +59,3 @@ def openings(pocket):
 def clean(pocket, R):
     """The largest offset [m] from the axis at which a ball touches no jaw: half of what the throat leaves."""
     return openings(pocket)["throat"] / 2 - R
-
-
-def measure_openings(pocket, speeds, rolling, physics, distance=0.3, halvings=30):
-    """The largest offset [m] at which a ball that runs along the axis drops without a jaw in its log, by
-    speed."""
-    speeds = np.asarray(speeds, float)
-    low, high = np.zeros(len(speeds)), np.full(len(speeds), 0.05)
-
-    def free(s):
-        hit, _, out = play_strokes_at(
-            pocket,
-            strokes(pocket, s, 0.0, distance, speeds, rolling, False, physics),
-            physics,
-            log=32,
-        )
-        logged = np.arange(out.event_what.shape[1]) < out.n_events[:, None]
-        return hit & ~((out.event_what[:, :, 0] == EventKind.JAW) & logged).any(1)
-
-    if not free(low).all() or free(high).any():
-        raise RuntimeError("the clean opening is not within the search")
-    for _ in range(halvings):
-        s = 0.5 * (low + high)
-        ok = free(s)
-        low, high = np.where(ok, s, low), np.where(ok, high, s)
-    return low
-
-
-def all_clean_drop(pocket, speeds, physics, distance=0.3, n=41):
-    """Do all balls within the clean opening drop, at every speed, rolling or not?"""
-    most = clean(pocket, physics.R)
-    s = np.linspace(-most, most, n)[:, None, None] * (1 - 1e-9)
-    return bool(
-        drops(
-            pocket,
-            0.0,
-            distance,
-            np.asarray(speeds)[:, None],
-            np.array([True, False]),
-            physics,
-            s,
-        ).all()
-    )

@@ -14,6 +14,7 @@ from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
 from ..game.sides import as_visits, strikers_own
 from ..physics.conditions import COLUMNS as CONDITIONS
+from ..physics.cue_room import EDGE
 from ..physics.table import Table
 from ..tasks.observations import FLAT, SIZE
 from ..tasks.options import Rules
@@ -273,6 +274,15 @@ def integers(field: str, values: Integers, low: int, high: int, n: int | None = 
     for k in np.flatnonzero((a < low) | (a > high))[:1].tolist():
         integer(f"{field}[{k}]", int(a[k]), low, high)
     return np.ascontiguousarray(a, np.int64)
+
+
+def check_rails(rails: Floats) -> Floats:
+    """A copy of ``rails``, which kernels may take; ValueError unless they are those of ``Rules.rails``."""
+    a = np.asarray(rails)
+    if a.ndim != 1 or a.dtype != np.float64 or len(a) % EDGE or not np.isfinite(a).all():
+        allowed = "must be Planner.rules.rails, or left out"
+        raise refuse_what("rails", f"{a.dtype} array of shape {a.shape}", allowed)
+    return a.copy()
 
 
 def seeds_of(seeds: Integers, n: int) -> Ints:

@@ -20,7 +20,7 @@ from ..physics.table import Table
 from ..tasks.discrete_actions import POTS
 from ..tasks.noise import Spread
 from ..tasks.pot_chance import RULE_OF_THUMB, points_left, worth_of_pots
-from .positions import Positions, PositionsLike
+from .positions import Positions, PositionsLike, check_rails
 
 WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
 
@@ -206,7 +206,7 @@ def prospects_of(
     """
     at, n = at.as_visits(), len(at)
     values, chances, balls = np.empty(n), np.empty((n, most)), (at.positions, at.on_table, at.ball_on.copy())
-    over = np.array(rails)  # kernels are compiled for arrays that can be written
+    over = check_rails(rails)
 
     def fill(rows: slice) -> None:
         _prospects(*(part[rows] for part in balls), spread, constants, over, values[rows], chances[rows])

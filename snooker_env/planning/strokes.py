@@ -15,7 +15,7 @@ from ..game.fouls import AUTO
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
-from ..physics.cue_room import EDGE, NO_RAILS
+from ..physics.cue_room import NO_RAILS
 from ..physics.parameters import Physics
 from ..tasks import box_actions as box
 from ..tasks import stroke
@@ -26,7 +26,7 @@ from ..tasks.kernel_arrays import C_END_MASS, pack_cue
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
 from .aims import check_columns
-from .positions import Positions, PositionsLike
+from .positions import Positions, PositionsLike, check_rails
 from .stroke_columns import AIM, COLUMNS, ELEVATION, LEAST, MOST, SIDE, SPEED, TOP
 from .trials import NO_NOISE, TrialVisits
 
@@ -301,11 +301,7 @@ def action_masks(positions: PositionsLike, *, rails: Floats = NO_RAILS) -> Bools
     >>> int(action_masks(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).sum())
     270
     """
-    edges = np.asarray(rails)
-    if edges.ndim != 1 or edges.dtype != np.float64 or len(edges) % EDGE or not np.isfinite(edges).all():
-        what = f"{edges.dtype} array of shape {edges.shape}"
-        raise refuse_what("rails", what, "must be Planner.rules.rails, or left out")
-    at, cue = Positions.of(positions).as_visits(), pack_cue(Physics(), edges)
+    at, cue = Positions.of(positions).as_visits(), pack_cue(Physics(), check_rails(rails))
     out = np.empty((len(at), SIZE), np.bool_)
     masks(np.arange(len(at)), at.positions, at.on_table, at.game, Choices().pack(), cue, out)
     return out

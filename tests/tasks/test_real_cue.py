@@ -178,6 +178,8 @@ def test_planning_and_players_of_choices_have_the_masks_of_the_task():
     for wrong in ("real", None, rails[1:], np.array([rails]), rails.astype(np.float32), np.full(6, np.nan)):
         with pytest.raises(ValueError, match=r"^rails = .*must be Planner\.rules\.rails"):
             action_masks(at, rails=wrong)
+        with pytest.raises(ValueError, match=r"^rails = "):
+            prospects_of(at, Spread(1e-3), rails=wrong)
     player: Any = sn.player("random").at({"cue": "real"})
     scores = player.scores(at, np.array([1, 2]))
     assert np.array_equal(np.isfinite(scores), real)
