@@ -226,6 +226,16 @@ def test_a_drill_outlives_a_reload_and_gives_the_seats_back(shown):
     shown.page.click("#drill-end")
     shown.until("!page.state.practice")
     assert {name: shown("page.state")[name] for name in before} == before
+    shown.page.click("#drills summary")
+    shown.page.click("#drill-list button:has-text('Position of the day')")
+    shown.until(f"page.drills.now && page.state.practice && {SETTLED} && page.aiming")
+    assert shown("page.state.noise[0]") == "amateur"  # the day's own
+    shown.page.click("#start summary")
+    shown.page.select_option(
+        "#level", "Rosa"
+    )  # another opponent ends the drill; the person errs as before it
+    shown.until("page.state.players[1] === 'Rosa'")
+    assert not shown("page.state.practice") and shown("page.state.noise") == ["none", "amateur"]
 
 
 def test_keys_turn_the_pages_of_the_tutorial_and_play_nothing(chromium, line):
