@@ -1,6 +1,7 @@
 """Which fixtures and settings do all tests share? A window that needs no display; drawn cases that are the
 same in every run."""
 
+import gc
 import os
 import warnings
 
@@ -24,6 +25,12 @@ def pytest_sessionstart(session):
         env = SnookerEnv(layout="random:1")
         env.reset(seed=0)
         env.step([0.0, 0.0, 0.0, 0.0])
+
+
+def pytest_collection_finish(session):
+    """What collecting has made stays until the end: no later garbage collection has to look through it."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture

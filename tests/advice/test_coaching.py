@@ -74,7 +74,7 @@ def played_by(noise, n, seed):
     return ball, pocket, meant, cues, made
 
 
-@pytest.mark.parametrize("noise", ["club", "professional"])
+@pytest.mark.parametrize("noise", [pytest.param("club", marks=pytest.mark.slow), "professional"])
 def test_errors_of_strokes_meant_and_played(noise):
     _, _, meant, cues, _ = played_by(noise, 3000, 1)
     found = errors_of([Recorded(position=ALONE, intended=meant, played=cue) for cue in cues])
@@ -123,7 +123,7 @@ def test_what_no_lapse_explains_tells_no_size():
     assert astray.value == pytest.approx(usual.value, rel=0.02)
 
 
-@pytest.mark.parametrize("noise", ["club", "amateur"])
+@pytest.mark.parametrize("noise", ["club", pytest.param("amateur", marks=pytest.mark.slow)])
 def test_pots_and_misses_alone_tell_the_direction(noise):
     ball, pocket, meant, cues, made = played_by(noise, 1500, 2)
     known = [

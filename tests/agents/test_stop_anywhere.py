@@ -62,7 +62,7 @@ def small(monkeypatch):
     monkeypatch.setattr(learn_strokes, "LAST_PASSES", {"visits": 3, "frames": 3})
 
 
-LONG = ("PPO that observes constants", "expert iteration", "strokes", "worth")
+LONG = ("PPO", "PPO that observes constants", "expert iteration", "strokes", "worth")
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in LONG)) for n in TRAININGS])

@@ -100,6 +100,7 @@ def launch(out, *options):
     return process
 
 
+@pytest.mark.slow
 def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     out = tmp_path / "run"
     process = launch(out)

@@ -33,7 +33,9 @@ def result(made, name="SnookerBreak-v0"):
     return read_result(made / f"{name}.json")
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n == "SnookerFrame-v0")) for n in TASKS]
+)
 def test_what_is_written_is_sound(made, name):
     record = result(made, name)
     assert faults(record) == []

@@ -55,9 +55,9 @@ runpy.{start}, run_name="__main__")
     ("package", "extra", "command"),
     [
         ("torch", "train", "train.py"),
-        ("sb3_contrib", "train", "train.py"),
+        pytest.param("sb3_contrib", "train", "train.py", marks=pytest.mark.slow),
         ("numpy", "train", "train.py"),
-        ("yaml", "train", "agents.evaluate --agent random"),
+        pytest.param("yaml", "train", "agents.evaluate --agent random", marks=pytest.mark.slow),
         ("torch", "train", "agents.evaluate --agent ppo_value"),
         ("numba", "train", "agents.calibrate x"),
         ("sb3_contrib", "train", "agents.curves"),
@@ -70,7 +70,7 @@ def test_a_command_says_what_is_missing(package, extra, command):
     assert done.stderr == f"{target}: {package} is missing; {where}\n" and done.returncode == 1
 
 
-@pytest.mark.parametrize("module", [f"agents.{name}" for name in ("curves", "evaluate", "report")])
+@pytest.mark.parametrize("module", [f"agents.{name}" for name in ("curves", "evaluate")])
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
     done = python("-m", module, "--help", NUMBA_CACHE_DIR=str(tmp_path), COLUMNS="120")

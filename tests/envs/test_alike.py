@@ -198,6 +198,7 @@ PAIRS = {
     "Shoot Out": PLAIN | OUT | {"layout": "random:2"},
     "position": FULL | {"says": ["decision", "lot"], "miss": "clear_path"},
 }
+RARE = "frames of a match", "masks", "masks, other errors"
 
 
 def two_players_act(env, rng):
@@ -207,7 +208,9 @@ def two_players_act(env, rng):
     return int(a) if masks else a
 
 
-@pytest.mark.parametrize("kind", PAIRS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind in RARE)) for kind in PAIRS]
+)
 def test_two_players_on_many_tables_play_as_in_a_match_alone(kind):
     """What both see, rewards, ends, infos and states; after resets of all, of some, and from each state of a match."""
     pytest.importorskip("pettingzoo")

@@ -207,14 +207,14 @@ def test_every_fault_of_a_visit_in_the_vector_environment():
         assert refusals > 500 and taken > 30
 
 
-@pytest.mark.parametrize("name", ["in_hand", "a choice", "replaced"])
+@pytest.mark.parametrize("name", [pytest.param("in_hand", marks=pytest.mark.slow), "a choice", "replaced"])
 def test_every_fault_of_a_frame(name, frame_states):
     env = frame_env(**FRAME)
     refusals, taken = attack(frame_states[name], loader(env, None), env.get_state, play=player(env, 1))
     assert refusals > 800 and taken > 50
 
 
-@pytest.mark.parametrize("name", ["a miss", "replaced"])
+@pytest.mark.parametrize("name", [pytest.param("a miss", marks=pytest.mark.slow), "replaced"])
 def test_every_fault_of_a_match(name, frame_states):
     pytest.importorskip("pettingzoo")
     env = begun(sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")}))

@@ -68,6 +68,7 @@ def test_each_stroke_is_read_alike():
     assert torch.equal(net.forward_critic(seen), position)
 
 
+@pytest.mark.slow
 def test_it_is_there_without_sb3_contrib():
     code = """
 import sys

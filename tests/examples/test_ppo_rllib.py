@@ -1,6 +1,7 @@
 """Is what RLlib's runners collect what the tables play, and does its policy play by our protocol?"""
 
 import numpy as np
+import pytest
 
 from agents.players.trained import load_player
 from snooker_env import SnookerEnv
@@ -12,6 +13,7 @@ ray = needed("ray")
 example = needed("examples.ppo_rllib")
 
 
+@pytest.mark.slow
 def test_what_runners_collect_is_what_single_tables_play():
     """Each table has a seed of its own; steps that only reset are left out; every choice was available."""
     ray.init("local", num_cpus=3, runtime_env={"env_vars": {"PYTHONPATH": str(ROOT)}}, log_to_driver=False)

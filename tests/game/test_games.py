@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from itertools import product
 
 import numpy as np
 import pytest
@@ -54,8 +55,16 @@ def acted(frame, rng, to_play, met):
     return after
 
 
-@pytest.mark.parametrize("rules", RULES)
-@pytest.mark.parametrize("miss", MISS_RULES)
+OFTEN = [("snooker", "clear_path"), ("snooker", "attempt"), ("six_red", "off"), ("shoot_out", "off")]
+
+
+@pytest.mark.parametrize(
+    ("rules", "miss"),
+    [
+        pytest.param(*pair, marks=[] if pair in OFTEN else pytest.mark.slow)
+        for pair in product(RULES, MISS_RULES)
+    ],
+)
 def test_whatever_is_played_the_frame_is_possible_and_a_table_keeps_it(rules, miss):
     if rules == "shoot_out" and miss != "off":
         with pytest.raises(ValueError, match="no miss is called"):

@@ -57,7 +57,7 @@ def met(events):
 
 @pytest.mark.parametrize(
     ("preset", "seed", "many"),
-    [("match", 103, 16), *(pytest.param(one, 5, 100, marks=pytest.mark.slow) for one in ("paper", "match"))],
+    [("match", 103, 8), *(pytest.param(one, 5, 100, marks=pytest.mark.slow) for one in ("paper", "match"))],
 )
 def test_shots_that_fly_are_those_of_tiny_steps(preset, seed, many):
     """All events are compared, of balls that meet balls, noses and jaws on the bed and in the air."""

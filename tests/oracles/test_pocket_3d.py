@@ -82,7 +82,13 @@ some that have struck a jaw bounce out of the hole off the slate's edge (the eng
 at most 4 mm elsewhere."""
 
 
-@pytest.mark.parametrize(("index", "angle"), PATHS)
+OFTEN = (CORNER, 20), (MIDDLE, 45)
+
+
+@pytest.mark.parametrize(
+    ("index", "angle"),
+    [pytest.param(*path, marks=[] if path in OFTEN else pytest.mark.slow) for path in PATHS],
+)
 def test_the_engines_windows_are_those_of_the_oracle(index, angle):
     """Of rolling balls, and of one that slides; a window that is much wider at one speed is wider in both."""
     speeds, rolling = np.array([2.0, *SPEEDS]), np.array([False, *(True for _ in SPEEDS)])

@@ -28,15 +28,15 @@ ONCE_LOST = {
 
 
 def depth(table, place, R):
-    """How deep a ball is in the nearest nose, arc or facing, found by points 10 um apart on each [m]."""
+    """How deep a ball is in the nearest nose, arc or facing, found by points 0.1 mm apart on each [m], to 50 nm."""
     deepest = -np.inf
     for axis, side, level, low, high in table.noses:
-        along = np.linspace(low, high, int((high - low) / 1e-5))
+        along = np.linspace(low, high, int((high - low) / 1e-4))
         edge = np.column_stack([np.full_like(along, side * level), along])
         deepest = max(deepest, R - np.hypot(*((edge if axis == 0 else edge[:, ::-1]) - place).T).min())
     for x, y, radius, ux, uy, cos_half in table.jaws:
         half = np.arccos(cos_half)
-        turn = np.arctan2(uy, ux) + np.linspace(-half, half, 2 + int(2 * half * radius / 1e-5))
+        turn = np.arctan2(uy, ux) + np.linspace(-half, half, 2 + int(2 * half * radius / 1e-4))
         dx, dy = x + radius * np.cos(turn) - place[0], y + radius * np.sin(turn) - place[1]
         deepest = max(deepest, R - np.hypot(dx, dy).min())
     return deepest

@@ -64,7 +64,7 @@ def truth_of(case, mu_bb):
 
 
 def test_two_balls_part_as_the_oracle_says():
-    cases = impacts(40, seed=7)
+    cases = impacts(20, seed=7)
     truths = [truth_of(c, c["mu_bb"]) for c in cases]
     for fidelity, most in (("reference", 1e-9), ("standard", 1e-5)):
         pairs = zip(cases, truths, strict=True)

@@ -172,7 +172,7 @@ def test_one_client_cannot_take_all_places(hosted):
 
 def test_who_sends_slowly_is_cut_off(line, monkeypatch):
     """Each byte comes in time, the request does not."""
-    monkeypatch.setattr(module, "IDLE", 1.0)
+    monkeypatch.setattr(module, "IDLE", 0.4)
     path, host = (
         f"/{line.server.token}/api/undo HTTP/1.1\r\n",
         f"Host: localhost:{line.server.server_port}\r\n",

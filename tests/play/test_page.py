@@ -333,7 +333,7 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
         pytest.param((844, 390), marks=pytest.mark.slow),
         pytest.param((820, 1180), marks=pytest.mark.slow),
         (1440, 900),
-        (3840, 2160),
+        pytest.param((3840, 2160), marks=pytest.mark.slow),
     ],
 )
 def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):

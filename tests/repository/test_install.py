@@ -81,7 +81,7 @@ HOW = {
 }
 
 
-@pytest.mark.parametrize("how", HOW)
+@pytest.mark.parametrize("how", [pytest.param("imported", marks=pytest.mark.slow), "named"])
 def test_the_environments_are_made_by_either_name(installed, how):
     out, err = installed.run(IDS.format(how=HOW[how]))
     made = ["SnookerEnv (61,)", "SnookerVectorEnv (3, 61)", str(sorted(ENTRY_POINTS))]

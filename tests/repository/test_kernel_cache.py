@@ -164,7 +164,7 @@ DAMAGED = {
     "garbage": lambda data: b"garbage" * 99,
     "one bit": lambda data: data[:40] + bytes([data[40] ^ 4]) + data[41:],
 }
-OFTEN = ("*double*.nbi", "garbage"), ("*double*.nbc", "one bit")
+OFTEN = [("*double*.nbc", "one bit")]
 CASES = [(what, how) for what in ("*double*.nbi", "*double*.nbc") for how in DAMAGED]
 
 
@@ -181,6 +181,7 @@ def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
     assert toy() == (LOADED, "")
 
 
+@pytest.mark.slow
 def test_another_kernels_machine_code_is_not_run_under_this_ones_name(toy):
     """Each file is whole; a double would be halved."""
     toy()

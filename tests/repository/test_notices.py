@@ -77,7 +77,9 @@ def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
     assert line == f"snooker_env: compiling one toy to machine code, about 9 s {hidden}"
 
 
-@pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
+@pytest.mark.parametrize(
+    "without", ["sys.stderr = None", pytest.param("sys.stderr.close()", marks=pytest.mark.slow)]
+)
 def test_without_stderr_it_works_all_the_same(toys, without):
     assert toys(f"import sys; {without}; assert one(1.0) == 3.0") == ""
 

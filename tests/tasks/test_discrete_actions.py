@@ -154,7 +154,6 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
         pytest.param("break_off_shoot_out", 40, 1.0, 1.0, marks=pytest.mark.slow),
         ("snookered", 10, 0.95, 0.95),
         pytest.param("snookered_match", 30, 0.95, 0.95, marks=pytest.mark.slow),
-        ("frames", 20, 0.99, 0.75),
         pytest.param("frames", 60, 0.99, 0.85, marks=pytest.mark.slow),
     ],
 )
