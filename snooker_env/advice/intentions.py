@@ -13,8 +13,7 @@ from ..planning.pot_geometry import obstructions
 from ..planning.worth import lead_of, left_of
 from ..players.cue_stroke import CueStroke
 from . import stroke_words as say
-from .practice import Practice, arrive, find_arrivals, join, start_from
-from .room import Room, room_for
+from .practice import Practice, Room, arrive, find_arrivals, join, room_for, start_from
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 
@@ -92,13 +91,8 @@ def _count_snookers(at: Positions, after: Positions, strokes: list[Intention]) -
     last = ~after.on_table[:, 1:16].any(axis=1)
     for one, lead, left, spends in zip(strokes, lead_of(after), left_of(after), fewer & last, strict=True):
         behind = int(-lead) if one.kind == "pot" and lead + left < 0.0 else 0
-        words = say.snookers_words(needs, behind, int(left))
-        out.append(
-            one._replace(
-                words=", ".join(filter(None, (one.words, words))),
-                spends=needs and one.kind == "pot" and bool(spends),
-            )
-        )
+        words = ", ".join(filter(None, (one.words, say.snookers_words(needs, behind, int(left)))))
+        out.append(one._replace(words=words, spends=needs and one.kind == "pot" and bool(spends)))
     return out
 
 

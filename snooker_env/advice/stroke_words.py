@@ -8,7 +8,7 @@ from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
 from ..players.cue_stroke import CueStroke
 from ..replays.referee_words import ball_name
-from .room import Room
+from .practice import Room
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
 """Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""
@@ -168,9 +168,3 @@ def reply_words(kind: str, replies: float | None, leaves: float | None, snookers
         return f"leaves the opponent {points_words(leaves)} if missed"
     hidden = f", snookered in {percent(snookers)}" if snookers is not None and snookers >= 0.01 else ""
     return f"the opponent pots next in {percent(replies)}, leaves the opponent {points_words(leaves)}{hidden}"
-
-
-def against_words(win: float, other: str) -> str:
-    """What a chance to win compares with: that of the best stroke of another kind, or of the next best."""
-    kinds = {"pot": "best pot", "safety": "best safety", "escape": "best escape"}
-    return f" against {percent(win)} for the {kinds.get(other, 'next best')}"

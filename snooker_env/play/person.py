@@ -9,7 +9,9 @@ from typing import Any
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
-from ..advice import Recorded, strokes_of
+from ..advice import Recorded
+from ..advice.recorded import strokes_of
+from ..replays import replay
 from .levels import BY_NAME
 from .session import Session
 
@@ -87,7 +89,7 @@ def tell_frame(
         "rated": fair and bool(played) and not session.hints[seat] and not session.undone,
     }
     any_own = any(act.player == seat for act in played)
-    mine = strokes_of([act.played for act in played], player=seat) if any_own else []
+    mine = strokes_of(replay([act.played for act in played]).to_dict(), seat) if any_own else []
     return frame, [one.to_dict() for one in mine]
 
 

@@ -204,9 +204,8 @@ def check_players(players: object, many: int) -> tuple[str, ...]:
         raise refuse("players", players, "must be None, or names")
     names = (players,) if isinstance(players, str) else tuple(players or ())
     if len(names) not in (0, many):
-        raise refuse(
-            "players", players, "must be two names for a frame, one for a visit, none for bare shots"
-        )
+        allowed = "must be two names for a frame, one for a visit, none for bare shots"
+        raise refuse("players", players, allowed)
     return tuple(check_text("players", name) for name in names)
 
 
