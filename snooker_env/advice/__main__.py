@@ -15,17 +15,13 @@ from .coach import Coaching, coach
 from .recorded import PLAYED_ON, REPLAY, read_document, read_strokes
 from .review import SAMPLES, Review, go_through, read_frame
 
-TABLES = ("match", "tight")  # presets of snooker's size
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Print what recorded strokes say about a player, or what those of a frame cost."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice")
     asked = parser.add_subparsers(dest="name", required=True)
     of_player = asked.add_parser("coach", help="a player's errors, expected pots and costs, and drills")
-    of_frame = asked.add_parser(
-        "review", help="what the choice and the errors of each stroke of a frame cost"
-    )
+    of_frame = asked.add_parser("review", help="what each stroke of a frame cost, by its choice and errors")
     files = "recorded strokes (JSON), or a replay (JSON or page)", "a replay of a frame (JSON or page)"
     for one, find, file in zip((of_player, of_frame), (_coach, _review), files, strict=True):
         one.set_defaults(find=find)
@@ -35,7 +31,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         one.add_argument("--json", action="store_true", help="print all figures as JSON")
     target = "level that costs are counted against (default: %(default)s)"
     of_player.add_argument("--target", choices=LEVELS, default="professional", help=target)
-    for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", TABLES)):
+    for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", ("match", "tight"))):
         of_player.add_argument(f"--{name}", choices=names, help=f"{name} of strokes whose file does not say")
     of_frame.add_argument("--agent", help="agent whose best strokes are compared (default: tactician)")
     of_frame.add_argument("--noise", choices=LEVELS, help="execution errors (default: those of the players)")

@@ -229,8 +229,7 @@ def _judge_fair(
 
 
 def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Suggestion]:
-    """Strokes, best first: pots ``spent`` on a ball that a snooker is needed on stand behind the ``others``, unless they
-    win far more often."""
+    """Strokes, best first: pots ``spent`` on a ball needed for a snooker stand last, unless they win far more often."""
     far = bool(others and spent) and spent[0].figure > FAR * others[0].figure
     return spent + others if far else others + spent
 
@@ -268,8 +267,7 @@ def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
 
 
 def _choose_least_bad(practice: Practice, strokes: list[Intention], trials: Trials) -> Suggestion:
-    """Where no stroke is sensible, the one that is fair in most samples, in a frame wins most often: a pot that hardly
-    ever goes only if there are no others."""
+    """Where no stroke is sensible, the one that is fair, in a frame wins, most often; a hopeless pot only if all are."""
     judged = judge_strokes(practice, strokes, trials)
     worst = [one.foul if one.win is None else -one.win for one in judged]
     seldom = [one.kind == "pot" and one.chance < SELDOM for one in judged]

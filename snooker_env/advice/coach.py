@@ -71,12 +71,11 @@ class Coaching:
                 often = f"{one.value / usual:.1f} times a professional's"
                 said = f"{value} {unit} [{low}, {high}], {often}, {one.source}"
             lines.append(f"error of {name}: {said}")
-        if errors.direction is not None:
-            law = "grows with the cue speed V as sqrt(1 + (g V)^2)"
-            said = f"at other speeds {unknown}"
-            if (g := errors.growth) is not None:
-                said = f"{law}, g = {g.value:.3g} [{g.low:.3g}, {g.high:.3g}] s/m"
-            lines.append(f"the error of direction {said}")
+        if (g := errors.growth) is not None:
+            law = f"sqrt(1 + (g V)^2), g = {g.value:.3g} [{g.low:.3g}, {g.high:.3g}] s/m"
+            lines.append(f"the error of direction grows with the cue speed V as {law}")
+        elif errors.direction is not None:
+            lines.append(f"the error of direction at other speeds {unknown}")
         if (one := self.expected) is not None:
             expected = f"{one.value:.0f} [{one.low:.0f}, {one.high:.0f}] expected with these errors"
             lines.append(f"pots: {self.made} of {self.called} made, {expected}")
@@ -88,10 +87,9 @@ class Coaching:
         if self.most is not None:
             lines.append(f"{self.most} costs most ({100 * self.sure:.0f} % sure)")
         drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
-        lines += drills or ["nothing to practise: no part costs more than at the target level"] * bool(
-            self.costs
-        )
-        return "\n".join(lines)
+        if self.costs and not drills:
+            drills = ["nothing to practise: no part costs more than at the target level"]
+        return "\n".join([*lines, *drills])
 
 
 def coach(
@@ -262,8 +260,8 @@ def find_pot(at: Position | Positions, one: Recorded) -> tuple[int, float] | Non
 
 
 def _choose_drill(part: str, strokes: list[Recorded], cost: Estimate, lost: Floats) -> Drill:
-    """What to practise against a cost: pots as wide as those that cost most; the line-up, where pots are easy and the cue ball
-    decides; escapes, if most was lost when snookered, else safeties."""
+    """What to practise against a cost: pots as wide as those that cost most; the line-up, where the cue ball decides; escapes
+    if most was lost when snookered, else safeties."""
     points = f"{cost.value:.1f} points a visit"
     if part == "position":
         return Drill(layout="line_up", reason=f"the positions left after pots cost {points}")

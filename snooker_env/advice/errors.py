@@ -174,16 +174,11 @@ def weigh_outcomes(pots: CalledPots, at: float) -> Floats:
 def list_chances(pots: CalledPots, at: float) -> Iterator[Floats]:
     """The chances (n, scales) of pots for each of ``GROWTHS``; the scales are of errors at the cue speed ``at``."""
     own = np.hypot(1.0, LEVELS[BASE].growth * pots.paces)
-    for row in grow_with_speed(pots.paces, at):
-        yield shift_chances(pots.chances, row / own)
-
-
-def shift_chances(chances: Floats, times: Floats) -> Floats:
-    """Chances (n, scales) for scales that are ``times`` (n,) as large."""
-    x = np.clip(np.arange(len(SCALES)) + np.log(times)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
-    left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
-    low, high = (np.take_along_axis(chances, left + k, axis=1) for k in (0, 1))
-    return low + (x - left) * (high - low)
+    for row in grow_with_speed(pots.paces, at):  # those of scales that are row / own times as large
+        x = np.clip(np.arange(len(SCALES)) + np.log(row / own)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
+        left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
+        low, high = (np.take_along_axis(pots.chances, left + k, axis=1) for k in (0, 1))
+        yield low + (x - left) * (high - low)
 
 
 def normalise(log_likelihood: Floats) -> Floats:
@@ -245,8 +240,7 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats,
 
 
 def fit_to_room(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:
-    """Elevation and side of a stroke as rails and balls allow them. The elevation that was played is more: where errors
-    take the room of the cue, it is raised once more."""
+    """Elevation and side of a stroke as rails and balls allow them, before errors take the room and raise the cue once more."""
     if practice.options.cue == "free":
         return float(stroke[4]), float(stroke[1])
     room = room_for(stroke, Positions.of(one.position), practice.options.rules)

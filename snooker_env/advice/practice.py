@@ -61,10 +61,8 @@ class Practice:
         return np.asarray(self.judge.worth(join(at)), np.float64) if at else np.empty(0)
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, keys: Words | None = None) -> Outcomes:
-        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
-
-        Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
-        still player 0 in ``afterstates``. Kicks (``Noise.kick``) do not change what is left."""
+        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without. In frames points, penalty
+        and, but for kicks, what is left are those of a frame, and whoever played is player 0 in ``afterstates``."""
         planner = self.exact if keys is None else self.noisy
         stops = planner.play_strokes(at, rows, strokes, None if self.sure else keys)
         if not at.of_frames:

@@ -27,8 +27,8 @@ from ..simulation.impacts import strike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
 
-FORMAT, VERSION, REPLAY = "snooker-strokes", 1, "snooker-replay"
-VERSIONS = {FORMAT: VERSION, REPLAY: 2}  # of files that are read
+FORMAT, REPLAY = "snooker-strokes", "snooker-replay"
+VERSIONS = {FORMAT: 1, REPLAY: 2}  # of files that are read
 T = TypeVar("T")
 PLAYED_ON = ("cue", "physics", "table")  # without these no error can be estimated: they are never assumed
 CALLED = radians(2.0)  # how far a stroke may be from its guessed pot: 4 sigma of a club player's hard one
@@ -362,9 +362,7 @@ def agree_options(strokes: Sequence[Recorded], options: object) -> Any:
         usual = _data(name, kept.setdefault(name, said[0]))
         for k, one in enumerate(said):
             if one is not None and (data := _data(name, one)) != usual:
-                own, other = (
-                    each.get("name", each) if isinstance(each, dict) else each for each in (data, usual)
-                )
+                own, other = (d.get("name", d) if isinstance(d, dict) else d for d in (data, usual))
                 raise refuse(f"strokes[{k}].{name}", own, f"must be {other!r}, as {whose}")
     return options if of_options else kept
 

@@ -88,8 +88,8 @@ def tell_frame(
         "undone": session.undone,
         "rated": fair and bool(played) and not session.hints[seat] and not session.undone,
     }
-    any_own = any(act.player == seat for act in played)
-    mine = strokes_of(replay([act.played for act in played]).to_dict(), seat) if any_own else []
+    strokes = [act.played for act in played if act.played is not None]
+    mine = strokes_of(replay(strokes).to_dict(), seat) if any(act.player == seat for act in played) else []
     return frame, [one.to_dict() for one in mine]
 
 
