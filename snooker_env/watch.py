@@ -18,11 +18,10 @@ from .players import FRAMES, VISITS, Player, decision_seeds, player
 from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import players_of
 from .replays import replay
-from .replays.document import SUFFIXES
+from .replays.document import FILMS, SUFFIXES
 from .replays.film import encoder_file
 
 NAME = "snooker_env.watch"
-FILMS = (".mp4", ".gif")
 USUAL, TACTICIAN = "planner", "tactician"  # who plays a visit and a frame unless someone is named
 FRAME = {"task": "frame", "cue": "real", "miss": "clear_path"}  # options of a frame that is watched
 

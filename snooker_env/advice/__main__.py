@@ -15,36 +15,28 @@ from .coach import Coaching, coach
 from .recorded import PLAYED_ON, REPLAY, read_document, read_strokes
 from .review import SAMPLES, Review, go_through, read_frame
 
-TABLES = ("match", "tight")  # presets of snooker's size
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Print what recorded strokes say about a player, or what those of a frame cost."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice")
-    asked = parser.add_subparsers(required=True)
-    about = "Estimate a player's errors, expected pots and costs from recorded strokes, and choose drills."
-    of_player = asked.add_parser("coach", help="what recorded strokes say about a player", description=about)
-    about = (
-        "Compare each stroke of a frame with an agent's best: what the choice cost, and what the errors cost."
-    )
-    of_frame = asked.add_parser("review", help="what the strokes of a frame cost", description=about)
-    of_player.set_defaults(find=_coach, name="coach")
-    of_frame.set_defaults(find=_review, name="review")
+    asked = parser.add_subparsers(dest="name", required=True)
+    of_player = asked.add_parser("coach", help="a player's errors, expected pots and costs, and drills")
+    of_frame = asked.add_parser("review", help="what each stroke of a frame cost, by its choice and errors")
     files = "recorded strokes (JSON), or a replay (JSON or page)", "a replay of a frame (JSON or page)"
-    for one, file in zip((of_player, of_frame), files, strict=True):
+    for one, find, file in zip((of_player, of_frame), (_coach, _review), files, strict=True):
+        one.set_defaults(find=find)
         one.add_argument("file", metavar="FILE", help=file)
         one.add_argument("--player", type=int, choices=(0, 1), help="whose strokes, in a replay of a frame")
         one.add_argument("--seed", type=int, default=0, help="seed of the simulated strokes (default: 0)")
         one.add_argument("--json", action="store_true", help="print all figures as JSON")
     target = "level that costs are counted against (default: %(default)s)"
     of_player.add_argument("--target", choices=LEVELS, default="professional", help=target)
-    for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", TABLES)):
+    for name, names in (("cue", CUES), ("physics", PHYSICS), ("table", ("match", "tight"))):
         of_player.add_argument(f"--{name}", choices=names, help=f"{name} of strokes whose file does not say")
     of_frame.add_argument("--agent", help="agent whose best strokes are compared (default: tactician)")
-    noise = "execution errors of all strokes (default: those of the players)"
-    of_frame.add_argument("--noise", choices=LEVELS, help=noise)
-    samples = "simulations of each stroke (default: %(default)s)"
-    of_frame.add_argument("--samples", type=int, default=SAMPLES, help=samples)
+    of_frame.add_argument("--noise", choices=LEVELS, help="execution errors (default: those of the players)")
+    many = "simulations of each stroke (default: %(default)s)"
+    of_frame.add_argument("--samples", type=int, default=SAMPLES, help=many)
     args = parser.parse_args(argv)
 
     def show() -> int:

@@ -17,7 +17,7 @@ from ..tasks.noise import NoiseLike
 from .intentions import FOULS, Intention, drop_alike, intend
 from .outcomes import Suggestion, Trials, judge_strokes
 from .practice import Practice, one_position, practice_of
-from .stroke_words import against_words
+from .stroke_words import percent
 
 AGENT, OF_FRAMES = "planner_500", "tactician_1000"
 """Who is asked if nobody is named: in a visit, and in a frame."""
@@ -89,9 +89,8 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    docs/play/advice.md explains how strokes are judged and ordered. Each is played ``samples`` times, with the same
-    execution errors whichever player is asked. The errors come from ``seed`` alone, not from the random stream of a saved
-    state, so advice never reveals the errors of the next stroke.
+    docs/play/advice.md explains how strokes are judged and ordered. Their errors come from ``seed`` alone, not from the
+    random stream of a saved state, so advice never reveals the errors of the next stroke.
 
     Parameters
     ----------
@@ -106,8 +105,7 @@ def advise(
     noise : str, dict or Noise
         Execution errors with which strokes are chosen and judged.
     n : int
-        Largest number of strokes, in [1, 100]. Of all ways to pot a ball into one pocket only the best counts, and likewise
-        of safeties off a red, or the same colour, that leave the cue ball in the same third of the table.
+        Largest number of strokes, in [1, 100].
     samples : int
         Number of simulations of each stroke, in [1, 100000]; without noise there is one.
     visits : int
@@ -122,9 +120,8 @@ def advise(
     -------
     Advice
         A sequence of ``Suggestion``, in words with ``str``. Its ``order`` says in words what orders them. ``own``: whether the
-        strokes are the agent's own; False if none of those is fair, so that others were judged, too. ``agent`` is its name,
-        ``noise`` a level or the fields of ``Noise``, ``scores`` None in a visit; ``suggestions``, ``position``, ``samples``,
-        ``visits`` and ``seed`` are as here. ValueError if an argument is invalid or there is no stroke to play.
+        strokes are the agent's own; False if none of those is fair, so that others were judged, too. Its other fields are the
+        arguments, ``agent`` as a name. ValueError if an argument is invalid or there is no stroke to play.
 
     Examples
     --------
@@ -232,8 +229,7 @@ def _judge_fair(
 
 
 def _lay_first(others: list[Suggestion], spent: list[Suggestion]) -> list[Suggestion]:
-    """Strokes, best first: pots ``spent`` on a ball that a snooker is needed on stand behind the ``others``, unless they
-    win far more often."""
+    """Strokes, best first: pots ``spent`` on a ball needed for a snooker stand last, unless they win far more often."""
     far = bool(others and spent) and spent[0].figure > FAR * others[0].figure
     return spent + others if far else others + spent
 
@@ -265,13 +261,13 @@ def _compare(best: list[Suggestion], others: list[Suggestion]) -> Suggestion:
     if not (rivals or best[1:]):
         return one
     rival = max(rivals or best[1:], key=lambda other: other.figure)
-    kind = rival.kind if rivals else ""
-    return replace(one, against=rival.win, words=one.words + against_words(rival.figure, kind))
+    which = f"best {rival.kind}" if rivals else "next best"
+    words = f"{one.words} against {percent(rival.figure)} for the {which}"
+    return replace(one, against=rival.win, words=words)
 
 
 def _choose_least_bad(practice: Practice, strokes: list[Intention], trials: Trials) -> Suggestion:
-    """Where no stroke is sensible, the one that is fair in most samples, in a frame wins most often: a pot that hardly
-    ever goes only if there are no others."""
+    """Where no stroke is sensible, the one that is fair, in a frame wins, most often; a hopeless pot only if all are."""
     judged = judge_strokes(practice, strokes, trials)
     worst = [one.foul if one.win is None else -one.win for one in judged]
     seldom = [one.kind == "pot" and one.chance < SELDOM for one in judged]

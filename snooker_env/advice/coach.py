@@ -17,7 +17,7 @@ from ..planning.proposals import Asking, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, pass_after_miss
 from ..tasks.noise import LEVELS, NoiseLike
-from .errors import BASE, SCALES, CalledPots, Estimate, PlayerErrors, fit_errors, list_chances
+from .errors import BASE, CalledPots, Estimate, PlayerErrors, fit_errors, list_chances
 from .practice import JUDGING, Practice, keys, one_position, practice_of
 from .recorded import Recorded, agree_options
 
@@ -48,7 +48,6 @@ class Coaching:
     called: int
     made: int
     expected: Estimate | None
-    likely: Estimate | None
     target: str | dict[str, float]
     costs: dict[str, Estimate]
     most: str | None
@@ -72,24 +71,14 @@ class Coaching:
                 often = f"{one.value / usual:.1f} times a professional's"
                 said = f"{value} {unit} [{low}, {high}], {often}, {one.source}"
             lines.append(f"error of {name}: {said}")
-        if errors.direction is not None:
-            law = "grows with the cue speed V as sqrt(1 + (g V)^2)"
-            said = f"at other speeds {unknown}"
-            if (g := errors.growth) is not None:
-                said = f"{law}, g = {g.value:.3g} [{g.low:.3g}, {g.high:.3g}] s/m"
-            lines.append(f"the error of direction {said}")
-        for name, one, unit, scale, words in (
-            ("aims", errors.aside, "deg", 1.0, ("left", "right")),
-            ("strikes", errors.faster, "%", 100.0, ("too hard", "too softly")),
-        ):
-            if one is not None and one.low * one.high > 0.0:
-                way = words[one.value < 0.0]
-                lines.append(f"on average {name} {scale * abs(one.value):.2g} {unit} {way}")
-        if self.expected is not None and self.likely is not None:
-            one = self.expected
-            expected = f"{one.value:.0f} [{one.low:.0f}, {one.high:.0f}]"
-            made = f"pots: {self.made} of {self.called} made, {expected} expected with these errors"
-            lines.append(f"{made}, {self.likely.value:.0f} at the target level")
+        if (g := errors.growth) is not None:
+            law = f"sqrt(1 + (g V)^2), g = {g.value:.3g} [{g.low:.3g}, {g.high:.3g}] s/m"
+            lines.append(f"the error of direction grows with the cue speed V as {law}")
+        elif errors.direction is not None:
+            lines.append(f"the error of direction at other speeds {unknown}")
+        if (one := self.expected) is not None:
+            expected = f"{one.value:.0f} [{one.low:.0f}, {one.high:.0f}] expected with these errors"
+            lines.append(f"pots: {self.made} of {self.called} made, {expected}")
         for name, one in self.costs.items():
             what, sign = ("gains", -1.0) if one.value < 0.0 else ("costs", 1.0)
             low, high = sorted((sign * one.low, sign * one.high))
@@ -98,10 +87,9 @@ class Coaching:
         if self.most is not None:
             lines.append(f"{self.most} costs most ({100 * self.sure:.0f} % sure)")
         drills = [f"practise {one.layout}: {one.reason}" for one in self.drills]
-        lines += drills or ["nothing to practise: no part costs more than at the target level"] * bool(
-            self.costs
-        )
-        return "\n".join(lines)
+        if self.costs and not drills:
+            drills = ["nothing to practise: no part costs more than at the target level"]
+        return "\n".join([*lines, *drills])
 
 
 def coach(
@@ -128,10 +116,9 @@ def coach(
         is based on; one that is not known is None.
 
         * ``errors``: the standard deviations outside lapses of the ``direction`` [deg], at the cue speed ``at`` [m/s], and of
-          the ``speed``, as a share of it; the ``growth`` of the first with the speed [s/m], see ``Noise``; the means ``aside``
-          (to the player's left [deg]) and ``faster`` (a share) of measured strokes.
-        * ``strokes``, ``visits``; ``called`` and ``made``: the pots whose outcome is known, and those that went in; of these
-          ``expected`` of a player with these errors and ``likely`` at the ``target`` level.
+          the ``speed``, as a share of it; the ``growth`` of the first with the speed [s/m], see ``Noise``.
+        * ``strokes``, ``visits``; ``called``, ``made`` and ``expected``: the pots whose outcome is known, those that went in, and
+          how many go in with these errors.
         * ``costs``: points lost in each visit against the target by "potting", "position" and "safety"; ``most``: which of
           them costs most, the more so the nearer ``sure``, a share of bootstrap samples, is to 1.
         * ``drills``, the costliest part first: each has the ``layout`` to play and the ``reason`` in one sentence.
@@ -179,8 +166,7 @@ def coach(
         visits=visits,
         called=len(called.rows),
         made=int(called.made.sum()),
-        expected=None if posterior is None else _expect(called, posterior, errors.at),
-        likely=_expect_of_target(called, bench),
+        expected=_expect(called, posterior, errors.at),
         target=target if isinstance(target, str) else asdict(bench.noise),
         costs=parts,
         most=most,
@@ -253,31 +239,16 @@ def play_best_pot(
     return float(went.mean()), float(worth[went].mean()), left
 
 
-def _expect_of_target(called: CalledPots, bench: Practice) -> Estimate | None:
-    """How many called pots a player of the target level makes, whose errors are known; the normal interval."""
-    physics, noise, base = bench.options.rules.physics, bench.noise, LEVELS[BASE]
-    times = [
-        noise.direction_deg(physics, speed=v) / base.direction_deg(physics, speed=v)
-        for v in called.paces.tolist()
-    ]
-    at = np.log(np.maximum(times, SCALES[0]))
-    p = np.array([np.interp(x, np.log(SCALES), row) for x, row in zip(at, called.chances, strict=True)])
-    return _interval(float(p.sum()), float((p * (1.0 - p)).sum()), len(p)) if len(p) else None
-
-
-def _expect(called: CalledPots, posterior: Floats, at: float) -> Estimate | None:
+def _expect(called: CalledPots, posterior: Floats | None, at: float) -> Estimate | None:
     """How many called pots are made: the mean over the errors' posterior, the normal interval of the count."""
-    if not len(called.rows):
+    n = len(called.rows)
+    if posterior is None or not n:
         return None
     mean = square = 0.0
     for chances, weights in zip(list_chances(called, at), posterior, strict=True):
         counts, spread = chances.sum(axis=0), (chances * (1.0 - chances)).sum(axis=0)
         mean, square = mean + float(counts @ weights), square + float((spread + counts**2) @ weights)
-    return _interval(mean, square - mean * mean, len(called.rows))
-
-
-def _interval(mean: float, variance: float, n: int) -> Estimate:
-    half = 1.96 * sqrt(max(0.0, variance))
+    half = 1.96 * sqrt(max(0.0, square - mean * mean))
     return Estimate(value=mean, low=max(0.0, mean - half), high=min(float(n), mean + half), strokes=n)
 
 
@@ -289,8 +260,8 @@ def find_pot(at: Position | Positions, one: Recorded) -> tuple[int, float] | Non
 
 
 def _choose_drill(part: str, strokes: list[Recorded], cost: Estimate, lost: Floats) -> Drill:
-    """What to practise against a cost: pots as wide as those that cost most; the line-up, where pots are easy and the cue ball
-    decides; escapes, if most was lost when snookered, else safeties."""
+    """What to practise against a cost: pots as wide as those that cost most; the line-up, where the cue ball decides; escapes
+    if most was lost when snookered, else safeties."""
     points = f"{cost.value:.1f} points a visit"
     if part == "position":
         return Drill(layout="line_up", reason=f"the positions left after pots cost {points}")

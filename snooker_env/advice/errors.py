@@ -19,9 +19,8 @@ from ..physics.cue import MAX_ELEVATION as STEEPEST_CUE
 from ..planning import Positions
 from ..planning.sobol import sobol_points
 from ..tasks.noise import LEVELS, POT_SPEED, TWICE
-from .practice import Practice
+from .practice import Practice, room_for
 from .recorded import CALLED, Recorded, direction_of, squirt
-from .room import room_for
 
 BASE = "professional"  # whose errors the estimates are multiples of
 LEAST, MOST = 0.02, 50.0  # smallest and largest error that is thought of, over a professional's
@@ -62,20 +61,12 @@ class Estimate:
 
 @dataclass(frozen=True, kw_only=True)
 class PlayerErrors:
-    """A player's errors of execution, with 95 % intervals; None where the strokes do not tell."""
+    """A player's errors of execution, with 95 % intervals, as ``coach`` describes them; None where the strokes do not tell."""
 
-    direction: (
-        Estimate | None
-    )  # standard deviation of the cue ball's direction outside lapses, at the cue speed ``at`` [deg]
-    at: float  # [m/s], see ``choose_speed``
-    growth: (
-        Estimate | None
-    )  # the g [s/m] in sqrt(1 + (g V)^2), by which it grows with the cue speed V; see ``Noise``
-    speed: Estimate | None  # standard deviation of the speed outside lapses, as a share of the speed
-    aside: (
-        Estimate | None
-    )  # mean error of the direction, anticlockwise (to the player's left) [deg, at the speed ``at``]
-    faster: Estimate | None  # mean error of the speed, as a share of it
+    direction: Estimate | None
+    at: float
+    growth: Estimate | None
+    speed: Estimate | None
 
 
 class CalledPots(NamedTuple):
@@ -107,28 +98,24 @@ def fit_errors(
     known = ~np.isnan(directions)
     pots = simulate_pots(strokes, practice, seed)
     told = [k for k, row in enumerate(pots.rows) if not known[row]]
-    base, direction, growth, weights, aside = LEVELS[BASE], None, None, None, None
+    base, direction, growth, weights, speed = LEVELS[BASE], None, None, None, None
     unit, n = base.direction_deg(practice.options.rules.physics, speed=at), int(known.sum()) + len(told)
     if n:
         sure = known & ~guessed
         rest = CalledPots([], pots.chances[told], pots.made[told], pots.paces[told])
         log_l = weigh_errors(directions[sure], more[:, sure]) + mixed + weigh_outcomes(rest, at)
         weights = normalise(log_l + np.log(PRIOR)[:, None])
-        direction, likeliest = estimate(weights.sum(axis=0), unit, n), weights.sum(axis=1)
+        direction = estimate(weights.sum(axis=0), unit, n)
         tried = np.concatenate([paces[known], rest.paces])
         if tried.max() >= SEVERAL * tried.min():
-            growth = estimate_growth(likeliest, n)
-        aside = estimate_mean(directions[known] / more[int(likeliest.argmax()), known], unit)
+            growth = estimate_growth(weights.sum(axis=1), n)
     v = speeds[~np.isnan(speeds)]
-    speed = None
     if len(v):
         speed = estimate(normalise(weigh_errors(v, np.ones((1, len(v))))[0]), base.speed_rel, len(v))
     if direction is None and speed is None:
         allowed = "with intended and played, with a pot and played, or with a pot and potted"
         raise refuse_what("strokes", "none that shows an error", f"must hold strokes {allowed}")
-    found = {"aside": aside, "faster": estimate_mean(v, base.speed_rel)}
-    errors = PlayerErrors(direction=direction, at=at, growth=growth, speed=speed, **found)
-    return errors, weights, pots, strokes
+    return PlayerErrors(direction=direction, at=at, growth=growth, speed=speed), weights, pots, strokes
 
 
 def choose_speed(paces: Floats) -> float:
@@ -187,16 +174,11 @@ def weigh_outcomes(pots: CalledPots, at: float) -> Floats:
 def list_chances(pots: CalledPots, at: float) -> Iterator[Floats]:
     """The chances (n, scales) of pots for each of ``GROWTHS``; the scales are of errors at the cue speed ``at``."""
     own = np.hypot(1.0, LEVELS[BASE].growth * pots.paces)
-    for row in grow_with_speed(pots.paces, at):
-        yield shift_chances(pots.chances, row / own)
-
-
-def shift_chances(chances: Floats, times: Floats) -> Floats:
-    """Chances (n, scales) for scales that are ``times`` (n,) as large."""
-    x = np.clip(np.arange(len(SCALES)) + np.log(times)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
-    left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
-    low, high = (np.take_along_axis(chances, left + k, axis=1) for k in (0, 1))
-    return low + (x - left) * (high - low)
+    for row in grow_with_speed(pots.paces, at):  # those of scales that are row / own times as large
+        x = np.clip(np.arange(len(SCALES)) + np.log(row / own)[:, None] / STEP, 0.0, len(SCALES) - 1.0)
+        left = np.minimum(x.astype(np.int64), len(SCALES) - 2)
+        low, high = (np.take_along_axis(pots.chances, left + k, axis=1) for k in (0, 1))
+        yield low + (x - left) * (high - low)
 
 
 def normalise(log_likelihood: Floats) -> Floats:
@@ -220,17 +202,6 @@ def estimate(weights: Floats, unit: float, strokes: int) -> Estimate:
     return Estimate(value=value, low=low, high=high, strokes=strokes)
 
 
-def estimate_mean(e: Floats, unit: float) -> Estimate | None:
-    """The mean of errors (n,), its 95 % interval by Student's law (Hill's expansion); None if n < 3."""
-    n = len(e)
-    if n < 3:
-        return None
-    z, f = 1.959964, n - 1
-    t = z + (z**3 + z) / (4 * f) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * f * f)
-    middle, half = float(e.mean()), t * float(e.std(ddof=1)) / sqrt(n)
-    return Estimate(value=middle * unit, low=(middle - half) * unit, high=(middle + half) * unit, strokes=n)
-
-
 def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats, Floats, Floats, Floats]:
     """What n strokes tell, NaN where they do not: errors of direction, in a professional's standard deviations for a level cue at
     rest; ``CALLED`` in this unit; errors of speed in those of speed; cue speeds [m/s], ``POT_SPEED`` where nothing is known."""
@@ -238,11 +209,8 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats,
     paces = np.full(len(strokes), POT_SPEED)
     base, physics = LEVELS[BASE], practice.options.rules.physics
     unit = np.radians(base.direction_deg(physics, speed=0.0))
-    at_pots = {
-        k: lower_cue(one, practice)
-        for k, one in enumerate(strokes)
-        if one.played is not None and one.ball is not None and one.intended is None
-    }
+    rows = [k for k, one in enumerate(strokes) if one.played and one.ball and not one.intended]
+    at_pots = {k: lower_cue(strokes[k], practice) for k in rows}
     lines = dict(zip(at_pots, zip(*solve_lines(list(at_pots.values()), practice), strict=True), strict=True))
     for k, one in enumerate(strokes):
         if one.intended is not None:
@@ -259,10 +227,8 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats,
             aside, more = one.played["aim"] - cue + squirt(one.played["side"] - side, physics), 1.0
         else:
             line, more = lines[k]
-            elevation, aside = (
-                (at_pots[k].played or {})["elevation"],
-                direction_of(one.played, physics) - line,
-            )
+            elevation = (at_pots[k].played or {})["elevation"]
+            aside = direction_of(one.played, physics) - line
         if practice.options.cue == "real":
             more *= 1.0 + elevation / TWICE
         directions[k], widths[k] = remainder(aside, 2.0 * pi) / (unit * more), CALLED / (unit * more)
@@ -274,8 +240,7 @@ def measure_errors(strokes: list[Recorded], practice: Practice) -> tuple[Floats,
 
 
 def fit_to_room(one: Recorded, stroke: Floats, practice: Practice) -> tuple[float, float]:
-    """Elevation and side of a stroke as rails and balls allow them. The elevation that was played is more: where errors
-    take the room of the cue, it is raised once more."""
+    """Elevation and side of a stroke as rails and balls allow them, before errors take the room and raise the cue once more."""
     if practice.options.cue == "free":
         return float(stroke[4]), float(stroke[1])
     room = room_for(stroke, Positions.of(one.position), practice.options.rules)

@@ -13,8 +13,7 @@ from ..planning.pot_geometry import obstructions
 from ..planning.worth import lead_of, left_of
 from ..players.cue_stroke import CueStroke
 from . import stroke_words as say
-from .practice import Practice, arrive, find_arrivals, join, start_from
-from .room import Room, room_for
+from .practice import Practice, Room, arrive, find_arrivals, join, room_for, start_from
 
 FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 
@@ -41,9 +40,8 @@ def intend(practice: Practice, at: Positions, strokes: list[CueStroke]) -> list[
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts)
     lies = _say_lies(stops) if at.of_frames else [""] * len(strokes)
-    made = [
-        _intend(practice, starts, stops, k, one, bool(hidden[k]), lies[k]) for k, one in enumerate(strokes)
-    ]
+    seen = zip(strokes, hidden.tolist(), lies, strict=True)
+    made = [_intend(practice, starts, stops, k, *one) for k, one in enumerate(seen)]
     return _count_snookers(at, stops.afterstates, made) if at.of_frames else made
 
 
@@ -84,21 +82,14 @@ def _intend(
 
 
 def _count_snookers(at: Positions, after: Positions, strokes: list[Intention]) -> list[Intention]:
-    """Strokes of a frame, which say whether the striker needs snookers, and what a pot then leaves.
-
-    A red is potted on the way as long as others are left; a colour that is spotted again costs no ball."""
+    """Strokes of a frame, which say whether the striker needs snookers, and what a pot of the last red or a colour leaves then."""
     needs, out = bool((lead_of(at) + left_of(at))[0] < 0.0), []
     fewer = after.on_table[:, 1:].sum(axis=1) < at.on_table[0, 1:].sum()
     last = ~after.on_table[:, 1:16].any(axis=1)
     for one, lead, left, spends in zip(strokes, lead_of(after), left_of(after), fewer & last, strict=True):
         behind = int(-lead) if one.kind == "pot" and lead + left < 0.0 else 0
-        words = say.snookers_words(needs, behind, int(left))
-        out.append(
-            one._replace(
-                words=", ".join(filter(None, (one.words, words))),
-                spends=needs and one.kind == "pot" and bool(spends),
-            )
-        )
+        words = ", ".join(filter(None, (one.words, say.snookers_words(needs, behind, int(left)))))
+        out.append(one._replace(words=words, spends=needs and one.kind == "pot" and bool(spends)))
     return out
 
 

@@ -22,6 +22,7 @@ from .practice import (
     GOING_ON,
     JUDGING,
     Practice,
+    Room,
     arrive,
     find_arrivals,
     join,
@@ -30,7 +31,6 @@ from .practice import (
     practice_of,
     start_from,
 )
-from .room import Room
 
 Z = 1.959964  # standard deviations of a 95 % interval
 OFTEN = 0.05  # share of misses from which is said what a missed pot leaves
@@ -47,12 +47,10 @@ class Suggestion(CueStroke):
     room : Room
         How the cue finds room over rails and balls: ``elevation`` [rad], ``side`` and ``top`` as they are then played; whether
         the cue is ``raised``, its tip ``moved``, because a cue of 45 degrees does not reach it, or the stroke ``unplayable``;
-        what it is ``over`` ("rail" or a ball), so far ``behind`` the cue ball's centre [m]; and ``words``. A free cue always
-        has room.
+        what it is ``over`` ("rail" or a ball), so far ``behind`` the cue ball's centre [m]; and ``words``.
     kind : {"pot", "contact", "safety", "escape", "in-off", "foul"}
         What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing; in a
-        frame, where this is judged, "safety"; "escape" if no straight path leads to a ball on. "in-off": it loses the cue
-        ball. "foul": any other foul.
+        frame "safety"; "escape" if no straight path leads to a ball on. "in-off": it loses the cue ball; "foul": any other.
     ball, pocket, first : int
         Id of the ball that the stroke pots without errors (if none, of the ball that it strikes first or plays away from);
         the pocket, an index into ``snooker_env.POCKETS``; id of the ball that it strikes first. -1 if none.
@@ -60,18 +58,15 @@ class Suggestion(CueStroke):
         Of a pot, the share of samples in which that ball went into that pocket without a foul; of another stroke, the share
         without a foul. Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points, points_interval : float, (float, float)
-        Expected points of the visit from this stroke on, continued by a fast search, with the 95 % interval of the
-        sampling error.
+        Expected points of the visit from this stroke on, continued by a fast search, with the 95 % interval.
     foul, in_off : float
         Shares of the samples with a foul, and with the cue ball potted.
     stops, spread : (float, float), float or None
         Mean stopping point of the cue ball [m] in the samples in which it stayed on the table, and the root mean square
         distance from that point [m]; None if it never stayed.
     win, win_interval, against, replies, leaves, snookers : float, (float, float), float, float, float, float or None
-        Only of a frame (docs/play/advice.md). ``win``: the chance to win, with the 95 % interval of the sampling error.
-        ``against``: of the first stroke, the chance to win of the best stroke of the other kind. ``replies``, ``leaves``,
-        ``snookers``: how often the opponent pots next, their mean points, and how often they are snookered; None if the
-        opponent never comes to the table.
+        Only of a frame: the chance to win with its 95 % interval; that of the first stroke's rival; how often the opponent
+        pots next, their mean points, and how often they are snookered. None if not known.
     words : str
         All of this in one line of text.
 
@@ -140,9 +135,7 @@ def judge_strokes(practice: Practice, strokes: list[Intention], trials: Trials) 
     stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
     groups = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries]) for k in range(n)]
     rests = _play_on_groups(practice, stops.afterstates, groups, trials)
-    looks: list[dict[str, Any]] = [{} for _ in strokes]
-    if starts.of_frames:
-        looks = _look_ahead(practice, starts, each, stops, trials, n)
+    looks = _look_ahead(practice, starts, each, stops, trials, n) if starts.of_frames else [{}] * n
     out = []
     for k, (one, rest, look) in enumerate(zip(strokes, rests, looks, strict=True)):
         mine = slice(k * tries, (k + 1) * tries)
@@ -185,16 +178,13 @@ def _look_ahead(
     theirs = arrive(after[comes])
     hidden = ~clear_paths(theirs)
     groups = [np.flatnonzero(each[comes] == k) for k in range(n)]
-    out = []
-    for mine, group, rest in zip(
-        wins, groups, _play_on_groups(practice, theirs, groups, trials), strict=True
-    ):
+    rests, out = _play_on_groups(practice, theirs, groups, trials), []
+    for mine, group, rest in zip(wins, groups, rests, strict=True):
         half = Z * sqrt(float(mine.var(ddof=1)) / len(mine)) if len(mine) > 1 else 0.0
         win = float(mine.mean())
         look = {"win": win, "win_interval": (max(0.0, win - half), min(1.0, win + half))}
-        look["replies"], look["leaves"] = (
-            (float((rest > 0.0).mean()), float(rest.mean())) if len(rest) else (None, None)
-        )
+        look["replies"] = float((rest > 0.0).mean()) if len(rest) else None
+        look["leaves"] = float(rest.mean()) if len(rest) else None
         look["snookers"] = float(hidden[group].mean()) if len(group) else None
         out.append(look)
     return out
@@ -287,10 +277,10 @@ def destinations(
     Returns
     -------
     Destinations
-        ``samples``, how often the stroke was played; ``cue`` and ``ball``, float64 (m, 2), where the cue ball and the object
-        ball stopped [m] in the samples in which they stayed on the table, before respotting: the object ball is the one that
-        the stroke hits first without errors, (0, 2) if none; the shares ``potted`` (the object ball), ``in_off`` (the cue
-        ball), ``foul`` and ``scored``; the mean ``points``. ValueError if an argument is invalid, or there is no stroke to play.
+        ``samples``, how often the stroke was played; ``cue`` and ``ball``, float64 (m, 2), where the cue ball and the ball
+        that the stroke hits first without errors stopped [m] in the samples in which they stayed on the table, before
+        respotting; the shares ``potted`` (that ball), ``in_off``, ``foul`` and ``scored``; the mean ``points``. ValueError
+        if an argument is invalid, or there is no stroke to play.
 
     Examples
     --------

@@ -1,8 +1,10 @@
 """Where are trial strokes played for advice? On a ``Practice``: with and without execution errors, in a visit or by the
-rules of a frame."""
+rules of a frame. And does the cue have ``Room`` for them?"""
 
 from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from functools import cached_property
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,10 @@ import numpy as np
 from .._lib.check import choice, integer, refuse, refuse_what
 from .._lib.types import Bools, Floats, Ints, Words
 from ..game import frame_columns as columns
+from ..game.balls import NAMES
 from ..game.in_hand import place_cue
+from ..physics.conditions import END_MASS_RATIO
+from ..physics.cue_room import MOVED, OVER_NOTHING, OVER_RAIL, RAISED, UNPLAYABLE, in_room_over
 from ..planning import FrameJudge, Outcomes, Planner, Positions, Search, VisitJudge
 from ..planning.positions import bare
 from ..planning.trials import turn_to_striker
@@ -20,13 +25,14 @@ from ..players.player import place_cue_balls
 from ..players.search_player import Tactician
 from ..players.seen import begun
 from ..tasks.noise import Noise
-from ..tasks.options import Options
+from ..tasks.options import Options, Rules
 from ..tasks.tables import Tables
 
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")  # of the table
 FRAME_OPTIONS = tuple(Options.group("frame"))  # those that count as well where a position is of a frame
 MOST_SCORE = 1000  # largest score of a player in a position of a frame
 QUICK = 30  # simulated shots of a decision of the player that plays visits on
+RAIL = "rail"  # what is in the way if no ball is
 JUDGING, GOING_ON = 1, 2  # of noise samples: those that chose a stroke do not judge it, for it may be lucky
 
 
@@ -55,10 +61,8 @@ class Practice:
         return np.asarray(self.judge.worth(join(at)), np.float64) if at else np.empty(0)
 
     def play(self, at: Positions, rows: Ints, strokes: Floats, keys: Words | None = None) -> Outcomes:
-        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without.
-
-        Of positions of frames the points, the penalty and what is left are those of a frame, and whoever played is
-        still player 0 in ``afterstates``. Kicks (``Noise.kick``) do not change what is left."""
+        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without. In frames points, penalty
+        and, but for kicks, what is left are those of a frame, and whoever played is player 0 in ``afterstates``."""
         planner = self.exact if keys is None else self.noisy
         stops = planner.play_strokes(at, rows, strokes, None if self.sure else keys)
         if not at.of_frames:
@@ -167,3 +171,52 @@ def arrive(after: Positions) -> Positions:
 def keys(seed: int, purpose: int, n: int, *more: int) -> Any:
     """n keys of noise samples, uint64 (n,): the same for equal arguments; a larger n begins with the same."""
     return np.random.default_rng((seed, purpose, *more)).integers(0, 2**64 - 1, n, dtype=np.uint64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Room:
+    """How the cue finds room for a stroke, execution errors apart; ``Suggestion`` describes the fields."""
+
+    elevation: float
+    side: float
+    top: float
+    raised: bool
+    moved: bool
+    unplayable: bool
+    over: str | None
+    behind: float  # 0 if there is nothing in the way
+
+    @property
+    def words(self) -> str:
+        """What the cue does for room, in words; "" for nothing, and for less than half a degree."""
+        what = self.over and ("a red" if self.over.startswith("red") else f"the {self.over}")
+        over = f" over {what}" if what else ""
+        if self.unplayable:
+            return f"no room for the cue{over}: nobody can play it, raised to {degrees(self.elevation):.0f} degrees"
+        parts = []
+        if self.raised and degrees(self.elevation) >= 0.5:
+            parts.append(f"cue raised to {degrees(self.elevation):.0f} degrees{over}")
+        if self.moved:
+            tip = f"{abs(self.top):.2f} {'above' if self.top >= 0.0 else 'below'} the middle"
+            aside = f", {abs(self.side):.2f} {'right' if self.side > 0 else 'left'}" if self.side else ""
+            parts.append(f"tip moved to {tip}{aside}{'' if parts else over}")
+        return ", ".join(parts)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields and the words as JSON types."""
+        return asdict(self) | {"words": self.words}
+
+
+def room_for(stroke: Floats, at: Positions, rules: Rules) -> Room:
+    """The room for a stroke in the one position ``at``: float64 (5,) as of ``CueStroke.numbers``."""
+    physics, tables = rules.physics, at.conditions if rules.drawn else None
+    ratio = physics.end_mass_ratio if tables is None else float(tables[0, END_MASS_RATIO])
+    # kernels are compiled for arrays that can be written
+    places, present, rails = at.positions[0].copy(), at.on_table[0].copy(), np.array(rules.rails)
+    numbers = map(float, (physics.R, physics.max_offset, ratio))
+    played, done, over, behind = in_room_over(tuple(stroke.tolist()), places, present, rails, *numbers)
+    _, side, top, _, elevation = played
+    bits = {"raised": RAISED, "moved": MOVED, "unplayable": UNPLAYABLE}
+    found: Any = {name: bool(done & bit) for name, bit in bits.items()}
+    found["over"] = None if over == OVER_NOTHING else RAIL if over == OVER_RAIL else NAMES[over]
+    return Room(elevation=elevation, side=side, top=top, behind=behind, **found)

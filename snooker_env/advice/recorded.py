@@ -2,9 +2,8 @@
 
 import base64
 import binascii
-import json
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from math import atan2, hypot, pi, radians, remainder
@@ -14,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
-from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
+from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json
 from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import CUE, N_BALLS, BallOn, mask_of_present, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
@@ -23,14 +22,13 @@ from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..planning import Position, pots
 from ..players.cue_stroke import CueStroke
-from ..replays import replay
 from ..replays.encode import physics_data, table_data, table_from
 from ..simulation.impacts import strike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.options import CUES, Options
 
-FORMAT, VERSION, REPLAY = "snooker-strokes", 1, "snooker-replay"
-VERSIONS = {FORMAT: VERSION, REPLAY: 2}  # of files that are read
+FORMAT, REPLAY = "snooker-strokes", "snooker-replay"
+VERSIONS = {FORMAT: 1, REPLAY: 2}  # of files that are read
 T = TypeVar("T")
 PLAYED_ON = ("cue", "physics", "table")  # without these no error can be estimated: they are never assumed
 CALLED = radians(2.0)  # how far a stroke may be from its guessed pot: 4 sigma of a club player's hard one
@@ -38,30 +36,37 @@ CUE_PARTS = ("speed", "side", "top", "aim", "elevation")
 MOST_PENALTY, MOST_POINTS = 7, 16
 FASTEST_CUE = 100.0  # [m/s]; under the law of errors a beginner's hardest stroke reaches 30 in a lapse
 _AIMS = POCKET_AIMS[:, [AIM_X, AIM_Y]]
+_JSON: dict[str, Callable[[Any], Any]] = {
+    "position": Position.to_dict,
+    "intended": CueStroke.to_dict,
+    "after": Position.to_dict,
+    "pocket": POCKETS.__getitem__,
+    "scores": list,
+    "physics": physics_data,
+    "table": table_data,
+}
+"""What turns fields of ``Recorded`` into JSON types."""
 _DATA = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Recorded:
-    """One recorded stroke of a player, immutable; ValueError for a field that is out of range. None means not known.
+    """One recorded stroke of a player; ValueError for a field that is out of range. None means not known.
 
     Parameters
     ----------
     position : Position
         The balls before the stroke, and the ball on.
-    intended : CueStroke, optional
-        The stroke as it was meant.
-    played : dict of str to float, optional
-        The stroke as it was played: "speed" [m/s], "side", "top" (over R), "aim" and "elevation" [rad], as ``Played.cue``.
-        Here ``aim`` is the direction of the cue itself, without squirt.
+    intended, played : CueStroke, dict of str to float, optional
+        The stroke as it was meant; as it was played, like ``Played.cue``: "speed" [m/s], "side", "top" (over R), "aim" and
+        "elevation" [rad], where "aim" is the direction of the cue itself, without squirt.
     speed : float, optional
         Roughly how hard the ball was struck [m/s], in [0.2, 7], if neither stroke is known.
     ball, pocket : int, optional
         The pot that was meant: id of the ball and index into ``snooker_env.POCKETS``. Both None: a safety or an escape.
-    potted : bool, optional
-        Whether that ball went into that pocket without a foul.
-    guessed : bool
-        Whether the pot was only guessed from the line of the stroke, which may have been a safety. Default False.
+    potted, guessed : bool, optional
+        Whether that ball went into that pocket without a foul; whether the pot was only guessed from the line of the stroke,
+        which may have been a safety (default False).
     points, penalty : int
         Points scored, in [0, 16], and given away, in [0, 7].
     after : Position, optional
@@ -133,9 +138,10 @@ class Recorded:
         put("scores", tuple(integer(f"scores[{k}]", one, 0, 1000) for k, one in enumerate(self.scores)))
         if self.cue is not None:
             choice("cue", self.cue, CUES)
-        for name, kind in (("physics", Physics), ("table", Table)):
-            if getattr(self, name) is not None:
-                put(name, kind.of(getattr(self, name)))
+        if self.physics is not None:
+            put("physics", Physics.of(self.physics))
+        if self.table is not None:
+            put("table", Table.of(self.table))
 
     @property
     def goes_on(self) -> bool:
@@ -144,15 +150,8 @@ class Recorded:
 
     def to_dict(self) -> dict[str, Any]:
         """Return what is known of the stroke as JSON types; ``from_dict`` reads it."""
-        kept: dict[str, Any] = {f.name: getattr(self, f.name) for f in fields(self)}
-        for name in ("position", "intended", "after"):
-            kept[name] = kept[name] and kept[name].to_dict()
-        kept["scores"] = list(self.scores)
-        for name, data in (("physics", physics_data), ("table", table_data)):
-            kept[name] = kept[name] and data(kept[name])
-        if self.pocket is not None:
-            kept["pocket"] = POCKETS[self.pocket]
-        return {name: value for name, value in kept.items() if value is not None}
+        known = {name: value for name, value in vars(self).items() if value is not None}
+        return {name: _JSON[name](value) if name in _JSON else value for name, value in known.items()}
 
     @classmethod
     def from_dict(cls, kept: Mapping[str, Any]) -> "Recorded":
@@ -186,36 +185,13 @@ def _check_cue(played: object) -> dict[str, float]:
     return {name: number(f"played.{name}", played.get(name, 0.0), *ends.get(name, ())) for name in CUE_PARTS}
 
 
-def write_strokes(path: str | Path, strokes: Iterable[Recorded]) -> None:
-    """Write strokes as JSON, whole or not at all; ``read_strokes`` reads them.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file. OSError if it cannot be written.
-    strokes : iterable of Recorded
-        The strokes of one player, in order.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, write_strokes
-    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_strokes(f"{folder}/mine.json", [Recorded(position=at, ball=21, pocket=4, potted=True)])
-    """
-    kept = {"format": FORMAT, "version": VERSION, "strokes": [one.to_dict() for one in strokes]}
-    write_atomic(path, json.dumps(kept, allow_nan=False) + "\n")
-
-
 def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorded]:
-    """Read the strokes of one player from a file of ``write_strokes``, or from a replay, JSON or page.
+    """Read the strokes of one player from a file of strokes (docs/play/coach.md), or from a replay, JSON or page.
 
     Parameters
     ----------
     path : str or Path
-        A ``.json`` file of ``write_strokes`` or of ``snooker_env.replay``, or the ``.html`` file of a replay.
+        A ``.json`` file of strokes or of ``snooker_env.replay``, or the ``.html`` file of a replay.
     player : int, optional
         In a replay of a frame, whose strokes to read, 0 or 1. Default None: all are of one player.
 
@@ -228,17 +204,19 @@ def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorde
     --------
     >>> import tempfile
     >>> import snooker_env as sn
-    >>> from snooker_env.advice import Recorded, read_strokes, write_strokes
-    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> from snooker_env.advice import read_strokes
+    >>> env = sn.SnookerEnv(action="discrete")
+    >>> env.keep_history = True
+    >>> _ = env.reset(seed=1), env.step(67)
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_strokes(f"{folder}/mine.json", [Recorded(position=at, ball=21, pocket=4, potted=True)])
-    ...     read_strokes(f"{folder}/mine.json")[0].potted
+    ...     path = sn.replay(env).save(f"{folder}/visit.json")
+    ...     read_strokes(path)[0].played is not None
     True
     """
     if player is not None:
         integer("player", player, 0, 1)
-    readers = {FORMAT: _from_strokes, REPLAY: _from_replay}
-    strokes = read_document(path, {form: partial(read, player=player) for form, read in readers.items()})
+    readers = {FORMAT: partial(_from_file, player=player), REPLAY: partial(strokes_of, player=player)}
+    strokes = read_document(path, readers)
     if not strokes:
         raise refuse("path", str(path), "must hold at least one stroke of the player")
     return strokes
@@ -268,35 +246,7 @@ def read_document(path: str | Path, readers: Mapping[str, Callable[[dict[str, An
         raise refuse_what(str(path), what, f"must be a whole {form!r}") from None
 
 
-def strokes_of(source: Any, *, player: int | None = None) -> list[Recorded]:
-    """Return the recorded strokes of an environment that keeps its history, or of its strokes.
-
-    Parameters
-    ----------
-    source : environment, or sequence of Played
-        As ``snooker_env.replay`` takes it.
-    player : int, optional
-        In a frame, whose strokes, 0 or 1. Default None: all are of one player.
-
-    Returns
-    -------
-    list of Recorded
-        ValueError for bare shots.
-
-    Examples
-    --------
-    >>> import snooker_env as sn
-    >>> from snooker_env.advice import strokes_of
-    >>> env = sn.SnookerEnv(action="discrete", noise="club")
-    >>> env.keep_history = True
-    >>> _ = env.reset(seed=1), env.step(67)
-    >>> strokes_of(env)[0].played is not None
-    True
-    """
-    return _from_replay(replay(source).to_dict(), player)
-
-
-def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
+def _from_file(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
     if player is not None:
         raise refuse("player", player, "must be left out: a file of strokes is of one player")
     made = []
@@ -306,7 +256,8 @@ def _from_strokes(kept: Mapping[str, Any], player: int | None) -> list[Recorded]
     return made
 
 
-def _from_replay(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
+def strokes_of(kept: Mapping[str, Any], player: int | None) -> list[Recorded]:
+    """The strokes of a ``player`` (None: there is one alone) in the data of a replay."""
     made = []
     if player is None and len({one["player"] for one in kept["strokes"]}) > 1:
         raise refuse("player", None, "must be 0 or 1: the replay is of two players")
@@ -401,9 +352,7 @@ def agree_options(strokes: Sequence[Recorded], options: object) -> Any:
         allowed = f"must be None, an Options, or a dict with keys as {PLAYED_ON}"
         raise refuse_what("options", f"a {type(options).__name__}", allowed)
     of_options = isinstance(options, Options)
-    kept: dict[str, Any] = (
-        {name: getattr(options, name) for name in PLAYED_ON} if of_options else dict(options or {})
-    )
+    kept: Any = {name: getattr(options, name) for name in PLAYED_ON} if of_options else dict(options or {})
     for name in PLAYED_ON:
         said = [getattr(one, name) for one in strokes]
         if name not in kept and None in said:
@@ -413,9 +362,7 @@ def agree_options(strokes: Sequence[Recorded], options: object) -> Any:
         usual = _data(name, kept.setdefault(name, said[0]))
         for k, one in enumerate(said):
             if one is not None and (data := _data(name, one)) != usual:
-                own, other = (
-                    each.get("name", each) if isinstance(each, dict) else each for each in (data, usual)
-                )
+                own, other = (d.get("name", d) if isinstance(d, dict) else d for d in (data, usual))
                 raise refuse(f"strokes[{k}].{name}", own, f"must be {other!r}, as {whose}")
     return options if of_options else kept
 

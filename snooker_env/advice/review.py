@@ -85,9 +85,8 @@ class Reviewed:
         costs, better, best, meant = [], "", name_stroke(self.best), name_stroke(self.meant)
         if self.choice >= LITTLE:
             costs.append(f"{percent(self.choice)} lost by the choice")
-            article = (
-                "the" if self.best.kind == "pot" and best[:3] != "red" else "a" + "n" * (best[0] in "aei")
-            )
+            alone = self.best.kind == "pot" and not best.startswith("red")
+            article = "the" if alone else "an" if best[0] in "aei" else "a"
             how = [one for one in _parts(self.best) if one not in _parts(self.meant) and "%" not in one][:2]
             idea = f"{article} {best}" if best != meant else ", ".join(["the same", *how])
             better = f"; the best was {idea}, {percent(self.best.figure)}"
@@ -154,10 +153,8 @@ class Review:
 
     def to_dict(self) -> dict[str, Any]:
         told = {"adjusted": self.adjusted, "concession": self.concession, "account": self.account}
-        told |= {
-            "strokes": [one.to_dict() for one in self.strokes],
-            "sides": [one._asdict() for one in self.sides],
-        }
+        strokes, sides = [one.to_dict() for one in self.strokes], [one._asdict() for one in self.sides]
+        told |= {"strokes": strokes, "sides": sides}
         return vars(self) | told | {"costliest": [one.number for one in self.costliest]}
 
     def __str__(self) -> str:
@@ -202,11 +199,9 @@ def go_through(
     samples: int = SAMPLES,
     seed: int = 0,
 ) -> Iterator[tuple[int, int, Review]]:
-    """Review a frame; yield how many steps are done, of how many, and what is known.
-
-    A rough look at all strokes of the ``players``, with errors of its own, gives their order. Then the strokes are judged, the
-    costliest first, as ``advise`` does with ``n=1`` and ``visits=0``. ``end``: the frame before the loser conceded; None: as
-    the last stroke left it."""
+    """Review a frame; yield how many steps are done, of how many, and what is known. A rough look at all strokes of the
+    ``players`` gives their order; then ``advise`` judges, the costliest first, with ``n=1`` and ``visits=0``. ``end``: the
+    frame before the loser conceded; None: as the last stroke left it."""
     trials = Trials(integer("samples", samples, 1, 100_000), 0, integer("seed", seed, 0, 2**62))
     turns, mine = frame.turns, [one for one in frame.turns if one.player in players]
     if not mine:
@@ -271,8 +266,7 @@ def _judge(
 
 
 def common_noise(errors: list[Noise]) -> Noise:
-    """The largest errors, at least a professional's, which the tactician has learned with; a player without errors counts
-    as an amateur."""
+    """The largest errors, at least a professional's (the tactician learned so); who has none counts as an amateur."""
     least = LEVELS["amateur" if any(one.silent for one in errors) else "professional"]
     # by the root mean square error of the direction, lapses included
     return max(

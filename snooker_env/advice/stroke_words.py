@@ -8,7 +8,7 @@ from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
 from ..players.cue_stroke import CueStroke
 from ..replays.referee_words import ball_name
-from .room import Room
+from .practice import Room
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
 """Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""
@@ -103,9 +103,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def push_words(x: float, y: float, aim: float, ball: int) -> str:
-    """What a referee would call a hit of a ``ball`` at the offset (x, y) that is nearly touching; "" of other hits.
-
-    A very fine edge may be struck."""
+    """What a referee would call a hit of a ``ball`` nearly touching at the offset (x, y), but for a fine edge; "" of others."""
     gap, far = hypot(x, y) - 2.0 * BALL_RADIUS, x * cos(aim) + y * sin(aim)
     fine = abs(y * cos(aim) - x * sin(aim)) > _FULLNESS[-1] * 2.0 * BALL_RADIUS
     if not (REFEREE_TOUCH <= gap < NEARLY) or far <= 0.0 or fine:
@@ -148,8 +146,7 @@ def points_words(points: float) -> str:
 
 
 def figures_words(kind: str, chance: float, points: float, foul: float | None = None) -> str:
-    """A pot's chance and points, else how often it is fair; ``foul``: of a frame, where its worth as a safety is said
-    elsewhere, the share of fouls."""
+    """A pot's chance and points, else how often a stroke is fair; ``foul``: in a frame, the share of fouls."""
     risk = f"fouls in {percent(foul)}" if foul is not None and foul > RISKY else ""
     if kind == "pot":
         return f"pot {percent(chance)}{risk and f', {risk}'}, {points_words(points)} expected"
@@ -168,9 +165,3 @@ def reply_words(kind: str, replies: float | None, leaves: float | None, snookers
         return f"leaves the opponent {points_words(leaves)} if missed"
     hidden = f", snookered in {percent(snookers)}" if snookers is not None and snookers >= 0.01 else ""
     return f"the opponent pots next in {percent(replies)}, leaves the opponent {points_words(leaves)}{hidden}"
-
-
-def against_words(win: float, other: str) -> str:
-    """What a chance to win compares with: that of the best stroke of another kind, or of the next best."""
-    kinds = {"pot": "best pot", "safety": "best safety", "escape": "best escape"}
-    return f" against {percent(win)} for the {kinds.get(other, 'next best')}"

@@ -11,7 +11,7 @@ from .._lib.cache import CACHE_FOLDER
 from .._lib.command import exit_code
 from .._lib.jit import ENTRIES, collecting_no_garbage
 from .._lib.notices import warming_up
-from ..advice.room import room_for
+from ..advice.practice import room_for
 from ..envs.snooker import SnookerEnv
 from ..game.apply_ruling import settle_table
 from ..game.balls import REDS_MASK

@@ -9,7 +9,9 @@ from typing import Any
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
-from ..advice import Recorded, strokes_of
+from ..advice import Recorded
+from ..advice.recorded import strokes_of
+from ..replays import replay
 from .levels import BY_NAME
 from .session import Session
 
@@ -86,8 +88,8 @@ def tell_frame(
         "undone": session.undone,
         "rated": fair and bool(played) and not session.hints[seat] and not session.undone,
     }
-    any_own = any(act.player == seat for act in played)
-    mine = strokes_of([act.played for act in played], player=seat) if any_own else []
+    strokes = [act.played for act in played if act.played is not None]
+    mine = strokes_of(replay(strokes).to_dict(), seat) if any(act.player == seat for act in played) else []
     return frame, [one.to_dict() for one in mine]
 
 

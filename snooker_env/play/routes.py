@@ -12,8 +12,8 @@ import numpy as np
 from .._lib.check import choice, integer, number, refuse, truth
 from .._lib.types import CueKind
 from ..advice import CueStroke, Suggestion, advise, coach, destinations
+from ..advice.practice import room_for
 from ..advice.review import SAMPLES, read_frame
-from ..advice.room import room_for
 from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
 from ..game.frame import CHOICES

@@ -46,8 +46,7 @@ def win_chances(judge: ChanceJudge, standings: Sequence[Standing]) -> list[float
 
 
 def positions_of(standings: Sequence[Standing], players: Ints, begun: Ints | None = None) -> Positions:
-    """n frames as they stand, each as one of its ``players`` (n,) sees it, who is player 0 there; ``begun`` (n,): how many
-    strokes were played before, by default none."""
+    """n frames as one of the ``players`` (n,) sees each, who is player 0 there; ``begun`` (n,): strokes played before, or none."""
     n = len(standings)
     game = np.zeros((n, columns.COLUMNS), np.int64)
     saved = columns.Layouts(np.zeros((n, 22, 2)), np.zeros((n, 22), np.bool_))
@@ -78,8 +77,7 @@ def start_of(shot: Shot) -> tuple[Floats, Bools]:
 
 
 def frame_before(stroke: Played, after: Frame) -> Frame:
-    """The frame that a stroke was played from. Where nobody kept it, neither the misses before it are known nor whether the
-    cue ball was in hand."""
+    """The frame that a stroke was played from; where nobody kept it, without misses before it and the cue ball in hand."""
     if stroke.before is not None:
         return stroke.before
     _, here = start_of(stroke.shot)

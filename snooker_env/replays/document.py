@@ -23,7 +23,8 @@ from .encode import encode_stroke, physics_data, table_data
 from .web import WEB, table_js
 
 FORMAT, VERSION = "snooker-replay", 2
-SUFFIXES = (".html", ".json", ".mp4", ".gif")
+FILMS = (".mp4", ".gif")
+SUFFIXES = (".html", ".json", *FILMS)
 USUAL = ((), ("Player",), ("Player 1", "Player 2"))  # names for bare shots, a visit and a frame
 
 
@@ -43,17 +44,14 @@ class Replay:
         Estimates each player's chance to win a frame, as ``snooker_env.player("tactician").at(env)`` does, with the errors
         of ``env``. ValueError if the strokes are not of a frame. Default None: no chances are shown.
     luck : sequence of float, optional
-        With a judge: the luck of each stroke, in [-1, 1], in its player's chance to win. It cannot be derived from the
-        strokes, which hold what was struck, not what was meant. Default None: not known.
+        With a judge: the luck of each stroke, in [-1, 1], in its player's chance to win. Default None: not known.
 
     Attributes
     ----------
-    strokes, title, players, table
-        Tuple of Shot or Played, str, tuple of names (empty for bare shots), and the ``Table`` of the shots or "match".
+    strokes, title, players, luck, table
+        As given, sequences as tuples (``players`` is empty for bare shots); the ``Table`` of the shots or "match".
     win_chance : tuple of float or None
         The first player's chance to win, before the first stroke and after each. None without a judge.
-    luck : tuple of float or None
-        As given.
 
     Examples
     --------
@@ -161,25 +159,22 @@ class Replay:
     def frames(
         self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
     ) -> Iterator[Bytes]:
-        """The pictures of the film, each uint8 (height, width, 3), to be treated as read-only.
-
-        ``fps`` and ``speed`` (a multiple of real time) lie in (0, 1000], else ValueError; ``size`` is width and height
-        [pixels]. ImportError without pygame."""
+        """The pictures of the film, each uint8 (height, width, 3), to be treated as read-only. ValueError unless ``fps`` and
+        ``speed`` (a multiple of real time) lie in (0, 1000]; ``size``: width, height [pixels]. ImportError without pygame."""
         from .film import frames
 
         return frames(self, fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
-        """Write the replay, whole or not at all, in the format of the suffix; returns the path.
+        """Write the replay, whole or not at all, as a page (``.html``), data (``.json``) or a film (``.mp4``, ``.gif``).
 
-        ``.html`` is the page, ``.json`` the data. ``.mp4`` and ``.gif`` are films and need the extra ``render``; ``film`` holds
-        ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF has 15 and 640 x 360 by default). ValueError for another suffix,
-        OSError if the file cannot be written, ImportError without the extra."""
+        Returns the path. ``film`` holds ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF has 12 and 640 x 360 by default).
+        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra ``render``."""
         if not isinstance(path, str | PathLike):
             raise refuse("path", path, "must be a str or a Path")
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
-        if suffix in (".mp4", ".gif"):
+        if suffix in FILMS:
             from .film import write_film
 
             write_film(self, target, **film)
@@ -204,9 +199,8 @@ def check_players(players: object, many: int) -> tuple[str, ...]:
         raise refuse("players", players, "must be None, or names")
     names = (players,) if isinstance(players, str) else tuple(players or ())
     if len(names) not in (0, many):
-        raise refuse(
-            "players", players, "must be two names for a frame, one for a visit, none for bare shots"
-        )
+        allowed = "must be two names for a frame, one for a visit, none for bare shots"
+        raise refuse("players", players, allowed)
     return tuple(check_text("players", name) for name in names)
 
 
@@ -223,14 +217,10 @@ def replay(
     Parameters
     ----------
     source : Shot, Played, sequence of Shot or Played, Position, or environment
-        * A ``Shot`` of ``sn.simulate``, or several in the order played.
-        * The strokes of an episode: ``env.history``; or the environment itself, wrapped or not, if it has a render mode or
-          its ``keep_history`` was set to True.
-        * A ``Position``, shown as it stands on the table "match".
-    path : str or Path, optional
-        A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
-    title, players, judge
-        As in ``Replay``.
+        Shots of ``sn.simulate`` in the order played; the strokes of an episode, ``env.history``; the environment itself,
+        wrapped or not, if it has a render mode or ``keep_history`` was set to True; or a position on the table "match".
+    path, title, players, judge
+        A file as of ``Replay.save``; and as in ``Replay``.
 
     Returns
     -------

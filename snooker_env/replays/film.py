@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from .document import Replay
 
 PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
-HD = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709"]
-HD += ["-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
-"""Options that turn colours into those of BT.709 in its limited range, and declare it."""
+MP4 = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1"]
+MP4 += ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-colorspace", "bt709"]
+MP4 += ["-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
+"""What ffmpeg is told of a film: its colours are turned into those of BT.709 in its limited range, and declared so."""
 USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 12.0)}
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
@@ -77,28 +78,15 @@ def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, 
     first = next(pictures)  # ValueError for a wrong rate, before anything is written
     pictures = chain([first], pictures)
     if path.suffix.lower() != ".gif":
-        wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
-        _pipe(pictures, size, fps, wanted, path)
+        _pipe(pictures, size, fps, MP4, path)
         return
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        wanted = ["-vf", "palettegen=stats_mode=single:max_colors=128"]
-        _pipe([_swatches(first)], (256, 256), 1.0, wanted, colours)
+        _pipe([first], size, fps, ["-vf", "palettegen"], colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(pictures, size, fps, chosen, path)
     finally:
         colours.unlink(missing_ok=True)
-
-
-def _swatches(picture: Bytes) -> Bytes:
-    """A picture's colours as a picture (256, 256, 3), rare ones enlarged: a ball's colour matters."""
-    coarse = (picture >> 2).astype(np.uint32)
-    codes, counts = np.unique(coarse @ np.array([1 << 12, 1 << 6, 1], np.uint32), return_counts=True)
-    share = np.cumsum(counts**0.25)
-    even = np.linspace(0.0, share[-1], 256 * 256, endpoint=False)
-    taken = codes[np.searchsorted(share, even, side="right")]
-    shades = np.stack([taken >> 12, (taken >> 6) & 63, taken & 63], axis=-1)
-    return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
 def encoder_file() -> str:

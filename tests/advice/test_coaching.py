@@ -14,15 +14,13 @@ from snooker_env.advice import (
     Recorded,
     coach,
     read_strokes,
-    strokes_of,
-    write_strokes,
 )
 from snooker_env.advice import errors as estimating
 from snooker_env.advice.__main__ import main
 from snooker_env.advice.coach import count_costs, value_strokes
 from snooker_env.advice.errors import Estimate
 from snooker_env.advice.practice import practice_of
-from snooker_env.advice.recorded import agree_options
+from snooker_env.advice.recorded import agree_options, strokes_of
 from snooker_env.planning import Planner, pots
 from snooker_env.tasks import LEVELS, Noise
 from tests.refusals import refuse_each, refused
@@ -33,6 +31,11 @@ CUE, MEANT = {"speed": 2.0, "aim": 0.8}, CueStroke(speed=2.0, aim=0.8)
 WHERE = {"cue": "free", "physics": "paper", "table": "match"}
 TOLD = [word for name, value in WHERE.items() for word in (f"--{name}", value)]
 coached = partial(coach, options=WHERE)
+
+
+def write_strokes(path, strokes):
+    kept = {"format": "snooker-strokes", "version": 1, "strokes": [one.to_dict() for one in strokes]}
+    path.write_text(json.dumps(kept))
 
 
 def errors_of(strokes):
@@ -81,15 +84,6 @@ def test_errors_of_strokes_meant_and_played(noise):
     assert (found.at, found.growth) == (2.0, None)  # all strokes are of one speed
     assert found.direction.value == pytest.approx(LEVELS[noise].direction_deg(speed=2.0), rel=0.04)
     assert found.speed.value == pytest.approx(LEVELS[noise].speed_rel, rel=0.04)
-    lapse, factor = LEVELS[noise].lapse, LEVELS[noise].lapse_factor
-    whole = np.sqrt(
-        1.0 - lapse + lapse * factor**2
-    )  # the standard deviation of all errors, lapses too, over the core's
-    for one, spread in ((found.aside, found.direction), (found.faster, found.speed)):
-        assert abs(one.value) < 4.0 * whole * spread.value / np.sqrt(3000)
-        assert one.high - one.low == pytest.approx(
-            2.0 * 1.96 * whole * spread.value / np.sqrt(3000), rel=0.15
-        )
 
 
 def test_without_lapses_the_interval_is_that_of_chi_square(monkeypatch):
@@ -148,7 +142,7 @@ def test_a_replay_and_a_file_give_the_same_strokes(tmp_path):
     for _ in range(6):
         choices = np.flatnonzero(env.action_masks())
         env.step(int(choices[len(choices) // 3]))
-    mine = strokes_of(env, player=0)
+    mine = strokes_of(sn.replay(env).to_dict(), 0)
     assert len(mine) == sum(one.player == 0 for one in env.history) > 3
     first = next(one for one in env.history if one.player == 0)
     assert mine[0].played == pytest.approx(first.cue) and mine[0].points == first.points
@@ -156,7 +150,12 @@ def test_a_replay_and_a_file_give_the_same_strokes(tmp_path):
     for suffix in (".json", ".html"):
         sn.replay(env, tmp_path / f"replay{suffix}")
         assert read_strokes(tmp_path / f"replay{suffix}", player=0) == mine
-    refused(lambda: strokes_of(env), "player", "None", "must be 0 or 1: the replay is of two players")
+    refused(
+        lambda: strokes_of(sn.replay(env).to_dict(), None),
+        "player",
+        "None",
+        "must be 0 or 1: the replay is of two players",
+    )
 
 
 def test_a_replay_says_where_it_was_played(tmp_path):
@@ -245,7 +244,7 @@ def test_strokes_as_fast_as_a_lapse_makes_them_are_read():
     for seed in range(20):
         env.reset(seed=seed)
         env.step([1.0, 0.0, 0.0, 0.5])
-        fastest = max(fastest, strokes_of(env)[0].played["speed"])
+        fastest = max(fastest, strokes_of(sn.replay(env).to_dict(), None)[0].played["speed"])
     assert fastest > 20.0  # it was refused
 
 
@@ -314,7 +313,7 @@ def test_the_drill_is_that_of_the_largest_cost():
     missed, made = missed_and_made()
     found = coached([missed] * 9 + [made])
     assert found.visits == 10 and (found.called, found.made) == (10, 1)
-    assert found.expected.low <= found.made <= found.expected.high < found.likely.value
+    assert found.expected.low <= found.made <= found.expected.high
     assert found.most == "potting" and found.drills[0].layout.startswith("pots:")
     assert found.costs["potting"].low > 0.0 and found.sure > 0.5
     assert found.drills[0].layout in {"pots:easy", "pots:medium", "pots:hard"}

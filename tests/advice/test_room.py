@@ -9,7 +9,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.advice import CueStroke
-from snooker_env.advice.room import room_for
+from snooker_env.advice.practice import room_for
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_WIDTH
 from snooker_env.planning import Positions
