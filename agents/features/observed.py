@@ -4,11 +4,12 @@ with its pots. For training there is a ``VecEnv``."""
 import numpy as np
 from gymnasium import spaces
 
+from snooker_env.physics.conditions import COLUMNS as CONDITIONS
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.pot_view import SHOWN, with_pots
-from snooker_env.tasks import OBSERVATION_SIZE, observation_space
+from snooker_env.tasks import OBSERVATION_SIZE
 
-OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
+OBSERVED_SIZE = OBSERVATION_SIZE + CONDITIONS
 """Size of a flat observation with the constants of the table."""
 
 

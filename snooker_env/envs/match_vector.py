@@ -12,7 +12,7 @@ from ..game.frame_columns import STRIKER
 from ..tasks.frames import Frames
 from ..tasks.options import Options
 from ..tasks.tables import Tables
-from .seats import match_options, match_tables
+from .arguments import match_options, match_tables
 from .vector import SnookerVectorEnv
 
 
@@ -83,7 +83,7 @@ class MatchVectorEnv(SnookerVectorEnv):
 
         ``actions`` are the strikers'; observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
         tables = self.tables
-        told = tables.actions[0].check_many(actions, self.num_envs)
+        told = tables.actions[0].check(actions, self.num_envs)
         self._require_begun()
         written = tables.output()
         with self._playing():

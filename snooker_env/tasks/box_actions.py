@@ -8,7 +8,7 @@ from gymnasium import spaces
 
 from .._lib.check import choice, number, refuse, refuse_what, truth
 from .._lib.jit import kernel
-from .._lib.types import Action, Floats
+from .._lib.types import Floats
 from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
@@ -111,25 +111,11 @@ class Actions:
         self.size = 4 + self.elevation + 2 * self.placement + said
         self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
 
-    def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
+    def check(self, actions: object, n: int | None = None) -> Floats:
+        """One action (size,), or those of n tables (n, size), as float64, clipped if up to ``ROUNDING`` outside [-1, 1].
 
-        Components up to ``ROUNDING`` outside are clipped."""
-        a = self._read("action", action, (self.size,)).tolist()
-        if not all(abs(x) <= 1.0 + ROUNDING for x in a):  # NaN fails too
-            raise refuse("action", a, _BOUNDS)
-        return [min(max(x, -1.0), 1.0) for x in a]
-
-    def check_many(self, actions: object, n: int) -> Floats:
-        """The actions of n tables, float64 (n, size), as ``check``; ValueError names the first invalid one."""
-        a = self._read("actions", actions, (n, self.size))
-        sound = np.abs(a) <= 1.0 + ROUNDING  # NaN is not
-        if not sound.all():
-            k = int(np.argmin(sound.all(axis=1)))
-            raise refuse(f"actions[{k}]", a[k].tolist(), _BOUNDS)
-        return a.clip(-1.0, 1.0, out=a)
-
-    def _read(self, field: str, actions: object, shape: tuple[int, ...]) -> Floats:
+        ValueError unless they have this shape and are within [-1, 1]; it names the first table with a bad one."""
+        field, shape = ("action", (self.size,)) if n is None else ("actions", (n, self.size))
         allowed = f"must have shape {shape}, real numbers"
         try:
             a = np.asarray(actions)
@@ -139,7 +125,13 @@ class Actions:
             raise refuse(field, actions, allowed)
         if a.shape != shape:
             raise refuse_what(field, f"array of shape {a.shape}", allowed)
-        return a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
+        a = a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
+        far = np.abs(a)
+        if not (most := far.max()) <= 1.0 + ROUNDING:  # NaN is not, either
+            k = int(np.argmin((far <= 1.0 + ROUNDING).all(axis=-1)))
+            bad = ("action", a) if n is None else (f"actions[{k}]", a[k])
+            raise refuse(bad[0], bad[1].tolist(), _BOUNDS)
+        return a.clip(-1.0, 1.0, out=a) if most > 1.0 else a
 
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""

@@ -23,7 +23,16 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, count
 from . import discrete_actions
 from .box_actions import place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_PLACEMENT, A_SPEEDS, playable
-from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
+from .kernel_arrays import (
+    C_E_T,
+    C_END_MASS,
+    C_MAX_OFFSET,
+    C_MU_S,
+    C_RAILS,
+    CueLaw,
+    PlayedArrays,
+    StruckArrays,
+)
 from .lines import new_work
 from .noise import execute_stroke, kick_of
 from .options import Rules
@@ -232,10 +241,8 @@ class ShotBuffers:
         self.n_segments: Ints = np.zeros(m, np.int64)
         self.duration: Floats = np.zeros(m)
         # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
-        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.aloft, self.here, self.shots, self.kicks)
-        ends = self.seen, self.potted, self.status, self.duration
-        events = self.event_time, self.event_what, self.n_events
-        self.played: tuple[Any, ...] = (self.r, self.aloft, self.shots, *ends, *events)
+        self.struck: tuple[Any, ...] = tuple(getattr(self, name) for name in StruckArrays._fields)
+        self.played: tuple[Any, ...] = tuple(getattr(self, name) for name in PlayedArrays._fields)
         self.enlarged: dict[int, ShotBuffers] = {}  # shots of the last run with a longer log of their own
 
     def __len__(self) -> int:
