@@ -63,10 +63,9 @@ class MatchVectorEnv(SnookerVectorEnv):
         if one != other:
             raise refuse("seats", seats, "must give both players the same actions; match_env takes others")
 
-    _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
-
-    def _tables_of(self, opponent: object, limit: int) -> Tables:
-        return match_tables(self.options, self._differences, self.num_envs)
+    def _game_of(self, given: Options | None, keywords: Any, limit: int) -> tuple[Options, Tables]:
+        options = match_options(given, keywords)
+        return options, match_tables(options, self._differences, self.num_envs)
 
     @property
     def strikers(self) -> Ints:

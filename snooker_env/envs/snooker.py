@@ -150,21 +150,16 @@ class OneTable:
 class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     """Shot selection in snooker: one step is one whole shot, simulated until all balls rest and then judged.
 
-    docs/environment/specification.md is the specification, with each formula, entry and key. In short:
+    ``Options`` says what can be chosen, docs/environment/specification.md each formula, entry and key. By default:
 
-    * **Task.** "visit" (default): a break until the first stroke that pots nothing, a foul or a clearance; "frame",
-      against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
+    * **Task.** A visit: a break until the first stroke that pots nothing, a foul or a clearance. In a frame a step is a
+      stroke and all of the opponent's after it.
     * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, side, top and the pot, whose aim is solved. All 0: the widest
-      pot, no spin. Longer with ``elevation``, ``placement`` and ``says``. Values up to 1e-6 outside are clipped, as
-      rounding; others are refused. ``action="discrete"``: ``Discrete(540)`` or more; ``action_masks()`` are the available.
-    * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: the four widest pots, the cue ball, the state. Of a
-      frame, or "flat", ``Box(-1.1, 1.1, (121,), float32)``: all balls, the state; a frame appends 19 numbers, a miss rule
-      66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``. "masked", of discrete actions:
-      ``Dict(observations, action_mask)``.
-    * **Reward.** "points" (default): of the stroke, of a frame the growth of the lead; or of a visit
-      "points_and_fouls", "pots", "legal", of a frame "win", of a match "frames".
-    * **Episode.** A frame is truncated after ``max_strokes`` strokes of both players; ``one_stroke=True``: it ends
-      after one step. ``reset(options=...)`` takes "state", "position" or "breaker" (0 the agent, 1 the opponent).
+      pot, no spin. Values up to 1e-6 outside are clipped, as rounding; others are refused.
+    * **Observation.** ``Box(-1.1, 1.1, (61,), float32)``: the four widest pots, the cue ball, the state. Of a frame, or
+      "flat", (121,): all balls, the state; a frame appends 19 numbers, a miss rule 66 more.
+    * **Reward.** The points of the stroke, in a frame the growth of the lead.
+    * **Episode.** ``reset(options=...)`` takes "state", "position" or "breaker" (0 the agent, 1 the opponent).
 
     Parameters
     ----------

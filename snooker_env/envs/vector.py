@@ -1,6 +1,4 @@
-"""How do thousands of tables play side by side? As kernels, on several threads.
-
-gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
+"""How do thousands of tables play side by side? As kernels, on several threads."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -101,9 +99,9 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         self.render_mode = render_mode
-        self.options, opponent = self._game_of(options, keywords)
         limit = NEVER if max_episode_steps is None else max_episode_steps
-        self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
+        limit = integer("max_episode_steps", limit, 1, NEVER)
+        self.options, self.tables = self._game_of(options, keywords, limit)
         own = copy.deepcopy(self.tables.actions[0].space)  # with its own generator
         self.single_action_space: spaces.Space[Any] = own
         self.single_observation_space: spaces.Space[Any] = self.tables.observation_space()
@@ -117,10 +115,9 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._recent: list[list[Played]] = [[] for _ in range(n)]  # of the last step or reset, if shown
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent
-
-    def _tables_of(self, opponent: object, limit: int) -> Tables:
-        return tables_of(self.options, opponent, self.num_envs, limit)
+    def _game_of(self, given: Options | None, keywords: Any, limit: int) -> tuple[Options, Tables]:
+        options, opponent = game_of(given, keywords)
+        return options, tables_of(options, opponent, self.num_envs, limit)
 
     @property
     def positions(self) -> Floats:

@@ -83,20 +83,13 @@ def shot_of(a, positions, on_table, on, options, law, work):
 class Actions:
     """The box action space: speed, side, top, aim, then elevation, place in the D (two), nomination, decision, declaration."""
 
-    aim: str
-    elevation: bool
     steepest: float  # the elevation that 1 means [rad]
-    placement: bool
-    says: tuple[str, ...]  # some of ``SAYS``, in their order
-    declares: bool  # whether the last component is a declaration
-    space: spaces.Box
-    size: int  # components of an action
 
     def __init__(
         self, aim: str, elevation: bool | float = False, placement: bool = False, says: Collection[str] = ()
     ):
-        self.aim = choice("aim", aim, AIMS)
-        self.placement = truth("placement", placement)
+        self.aim: str = choice("aim", aim, AIMS)
+        self.placement: bool = truth("placement", placement)
         if isinstance(elevation, (bool, np.bool_)):
             self.steepest = MAX_ELEVATION if elevation else 0.0
         else:
@@ -104,17 +97,15 @@ class Actions:
                 self.steepest = radians(number("elevation", elevation, 5.0, 70.0))
             except ValueError:
                 raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
-        self.elevation = self.steepest > 0.0
-        self.says = tuple(name for name in SAYS if name in says)
-        self.declares = any(name in self.says for name in DECLARES)
+        self.elevation: bool = self.steepest > 0.0
+        self.says: tuple[str, ...] = tuple(name for name in SAYS if name in says)
+        self.declares: bool = any(name in self.says for name in DECLARES)  # by the last component
         said = ("nominate" in says) + ("decision" in says) + self.declares
-        self.size = 4 + self.elevation + 2 * self.placement + said
-        self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
+        self.size: int = 4 + self.elevation + 2 * self.placement + said  # components of an action
+        self.space: spaces.Box = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
 
     def check(self, actions: object, n: int | None = None) -> Floats:
-        """One action (size,), or those of n tables (n, size), as float64, clipped if up to ``ROUNDING`` outside [-1, 1].
-
-        ValueError unless they have this shape and are within [-1, 1]; it names the first table with a bad one."""
+        """One action (size,), or those of n tables (n, size): float64, clipped if up to ``ROUNDING`` outside; ValueError for others."""
         field, shape = ("action", (self.size,)) if n is None else ("actions", (n, self.size))
         allowed = f"must have shape {shape}, real numbers"
         try:

@@ -1,6 +1,5 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos.
-Row j of a shot's arrays belongs to table which[j]. ``tables``, ``saved``, ``shots``, ``output`` and ``setting`` are
-plain tuples of the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos. Arrays come as plain tuples of
+the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``; shot j is on table which[j]."""
 
 from typing import NamedTuple
 
@@ -364,9 +363,9 @@ def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> None:
     for j in np.flatnonzero((b.status[:m] == _OK) & (b.seen[:m, stroke.ATTEMPT] == 0)).tolist():
         k = int(which[j])
         p, here, row = tables.positions[k], tables.on_table[k], tables.game[k]
-        world, one, at = tables.world(k), b, j
+        one, at = b, j
         if not b.segments.shape[1]:
-            one, at = stroke.play_again(b, j, b.log, (p, here), world, path=True), 0
+            one, at = tables.play_again(k, here, j, b, b.log, path=True), 0
         gap = gap_of(p, here, row, one.played, (one.segments, one.n_segments), at)
         placed, on = row[columns.IN_HAND] or row[columns.ANYWHERE], tables.on(k)
         if gap > ATTEMPT_GAP and not placed and shut_in(p, here, on, *cushions, BALL_RADIUS):
@@ -374,6 +373,6 @@ def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> None:
             ahead = (p - p[CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
             only = here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
             only[CUE] = True
-            one = stroke.play_again(b, j, b.log, (p, only), world, path=True)
+            one = tables.play_again(k, only, j, b, b.log, path=True)
             gap = gap_of(p, only, row, one.played, (one.segments, one.n_segments), 0)
         b.seen[j, stroke.ATTEMPT] = gap <= ATTEMPT_GAP

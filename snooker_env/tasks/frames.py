@@ -1,8 +1,5 @@
-"""How is a frame played, on one table or on thousands? Turns of two players, each table on its own.
-
-A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the referee,
-``frame_kernels.conclude``. A step is the turn of the agent, player 0, and all turns of the opponent, player 1, up to the
-agent's next one. If a frame ends in the opponent's first visit, the next step plays nothing and reports it (``Frames.due``)."""
+"""How is a frame played, on one table or on thousands? A step is a turn of the agent, player 0, and all of the opponent's after
+it. In a turn ``frame_kernels`` ``decide`` and ``conclude``, the referee, before and after ``stroke.address`` and ``stroke.run``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -75,16 +72,13 @@ class Frames(Tables):
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
-    COUNTS: tuple[str, ...] = (
-        *(*Tables.COUNTS, "strokes", "opponent_strokes", "winner"),
-        *(*FLAGS, "misses", "failures"),
-    )
+    COUNTS = (*Tables.COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
     COLUMNS = columns.COLUMNS
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
     declined; AUTO, as always between two strokes: the colour first struck. Unchecked."""
-    due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
+    due: Bools  # (n,) which ended in the opponent's first visit: the next step plays nothing and reports it
     through: Bools  # (n,) which episodes of one stroke have ended
     seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
 
@@ -93,8 +87,7 @@ class Frames(Tables):
             self.COUNTS = (*self.COUNTS, "frames_won", "opponent_frames", "frame")
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
-        self._saved_positions = np.zeros((n, N_BALLS, 2))
-        self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
+        self._saved_positions, self._saved_on_table = self.positions.copy(), self.on_table.copy()
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)

@@ -1,7 +1,7 @@
 """How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike), then
 ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table which[j]."""
 
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -272,19 +272,3 @@ def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool
     log = buffers.event_time, buffers.event_what, buffers.segments
     ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
     engine.run_batch(balls, aloft, setup, MAX_EVENTS, log, ends, 0, m)
-
-
-World: TypeAlias = tuple[Rules, Floats]
-"""The rules, and the packed constants of a table: one row."""
-
-
-def play_again(
-    buffers: ShotBuffers, j: int, log: int, balls: tuple[Floats, Bools], world: World, path: bool = False
-) -> ShotBuffers:
-    """Play shot j once more, uncounted, in its own buffers with that log; with its path if ``buffers`` or ``path`` say so."""
-    one, shot = ShotBuffers(1, log, path=path or buffers.segments.shape[1] > 0), buffers.shots[j]
-    one.shots[0], one.seen[0], one.kicks[0] = shot, buffers.seen[j], buffers.kicks[j]
-    one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = shot[[VX, VY]], shot[[WX, WY, WZ]], shot[UZ]
-    one.r[0], one.here[0] = balls
-    run(one, 1, *world, again=True)
-    return one

@@ -11,7 +11,7 @@ from gymnasium import spaces
 from .._lib.check import refuse
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
-from ..game.balls import COLOURS_MASK, N_BALLS, BallOn, balls_on, mask_of_present
+from ..game.balls import COLOURS_MASK, CUE, N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER
 from ..game.philox import pair, stream_of
 from ..geometry import BALL_RADIUS
@@ -140,31 +140,28 @@ class Tables(ABC):
     FLAGS: tuple[str, ...] = ()  # those of ``COUNTS`` that infos give as bool
     COLUMNS = 0  # of ``game``
 
-    reals: tuple[str, ...]  # ``REALS``, and the constants if they are drawn
     rules: Rules
     n: int
     limit: int
     positions: Floats  # (n, 22, 2) [m]
     on_table: Bools  # (n, 22)
-    game: Ints  # (n, COLUMNS), of ``game.frame_columns``
-    streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
-    begun: Bools  # (n,) which tables have an episode, possibly one that has ended
     actions: tuple[Actions | Choices, ...]  # of each seat, as the next
     noises: tuple[Noise, ...]
     cues: Floats  # packed: one row, or one a table if the conditions are drawn
     phys: Floats  # packed constants, likewise
-    conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
         self.positions, self.on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
-        self.game = np.zeros((n, self.COLUMNS), np.int64)
+        self.game: Ints = np.zeros((n, self.COLUMNS), np.int64)  # columns of ``game.frame_columns``
         self.game[:, BALL_ON], self.game[:, OVER] = -1, True
-        self.streams = np.zeros((n, 2), np.uint64)
-        self.begun = np.zeros(n, np.bool_)
-        self.reals = self.REALS
-        self.conditions = np.empty((0, CONDITIONS))
+        self.streams: Words = np.zeros((n, 2), np.uint64)  # key and counter of each table's random stream
+        self.begun: Bools = np.zeros(n, np.bool_)  # which have an episode, possibly one that has ended
+        self.reals: tuple[str, ...] = self.REALS  # with the constants if they are drawn
+        self.conditions: Floats = np.empty(
+            (0, CONDITIONS)
+        )  # constants drawn, (n, 8); no rows: they are fixed
         _, self.cues, _, self.phys = rules.pack()
         self._read((rules.actions,), (rules.noise,))
         if rules.drawn:
@@ -228,15 +225,15 @@ class Tables(ABC):
 
     def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke just played on table k, shot j of the buffers, and the table after it."""
-        game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
-        if seen[stroke.SCORED]:
-            standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
+        game, standing, fields = self.game[k], self.standing(k), fields_of(buffers, j)
+        if fields["points"]:
+            standing["break_points"] = fields["break_before"] + fields["points"]  # also if it ended the frame
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        noise = self.noises[min(seen[stroke.PLAYER], len(self.noises) - 1)]  # alone, the agent has both turns
+        noise = self.noises[min(fields["player"], len(self.noises) - 1)]  # alone, the agent has both turns
         own = {"shot": self.shot(k, buffers, j), "cue_kind": self.rules.cue, "noise": noise}
-        return Played(**own, **balls, **after, **fields_of(buffers, j), **standing)
+        return Played(**own, **balls, **after, **fields, **standing)
 
     def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
         """Shot j of the buffers, played on table k."""
@@ -320,10 +317,6 @@ class Tables(ABC):
         physics = self.rules.physics
         return physics_with(physics, self.conditions[k]) if self.rules.drawn else physics
 
-    def world(self, k: int) -> stroke.World:
-        """What shots on table k are played with."""
-        return self.rules, self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
-
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""
         own = ("conditions", "cues", "phys") if self.rules.drawn else ()
@@ -348,13 +341,25 @@ class Tables(ABC):
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Play shot j with a longer log in its own buffers, returned; SimulationError if it does not help."""
         k, one, status = which[j], buffers, buffers.status[j]
-        balls = self.positions[k], self.on_table[k]
         while status == Status.LOG_FULL:
-            one = stroke.play_again(buffers, j, 4 * one.log, balls, self.world(k))
+            one = self.play_again(k, self.on_table[k], j, buffers, 4 * one.log)
             status = one.status[0]
         if status != Status.OK:
             raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
         buffers.enlarged[j] = one
+        return one
+
+    def play_again(
+        self, k: int, here: Bools, j: int, b: stroke.ShotBuffers, log: int, *, path: bool = False
+    ) -> stroke.ShotBuffers:
+        """Shot j of ``b``, on table k with the balls ``here``, once more in its own buffers, uncounted; ``path``: with its path."""
+        one, shot = stroke.ShotBuffers(1, log, path=path or b.segments.shape[1] > 0), b.shots[j]
+        one.shots[0], one.seen[0], one.kicks[0] = shot, b.seen[j], b.kicks[j]
+        velocity, spin = shot[[stroke.VX, stroke.VY]], shot[[stroke.WX, stroke.WY, stroke.WZ]]
+        one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = velocity, spin, shot[stroke.UZ]
+        one.r[0], one.here[0] = self.positions[k], here
+        phys = self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
+        stroke.run(one, 1, self.rules, phys, again=True)
         return one
 
     # what each task implements
