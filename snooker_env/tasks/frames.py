@@ -28,6 +28,7 @@ from .tables import I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables, unifor
 from .visit import Visits
 
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
+_OF_FRAMES = ("strokes", "opponent_strokes", "winner")
 _OF_MATCHES = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
 Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
 """Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
@@ -72,7 +73,7 @@ class Frames(Tables):
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
-    COUNTS = (*Tables.COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
+    COUNTS: tuple[str, ...] = (*Tables.COUNTS, *_OF_FRAMES, *FLAGS, "misses", "failures")
     COLUMNS = columns.COLUMNS
 
     nominated: Ints
