@@ -16,7 +16,7 @@ def shot(actions, a, positions, on_table, on, physics="paper"):
     env.reset(seed=0)
     env.tables.positions[0], env.tables.on_table[0] = positions, on_table
     env.tables.game[0, BALL_ON] = BallOn.RED
-    assert actions.aim == "absolute" or env.on == on
+    assert actions.aim == "absolute" or env.tables.on(0) == on
     env.keep_history = True
     env.step(np.asarray(a)[: env.action_space.shape[0]])
     return tuple(env.history[-1].cue.values())

@@ -6,10 +6,7 @@ from gymnasium import spaces
 
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.pot_view import SHOWN, with_pots
-from snooker_env.tasks import OBSERVATION_SIZE, observation_space
-
-OBSERVED_SIZE = spaces.flatdim(observation_space("flat", conditions=True))
-"""Size of a flat observation with the constants of the table."""
+from snooker_env.tasks import OBSERVATION_SIZE
 
 
 def shown(env_kwargs):
@@ -22,8 +19,8 @@ def space_of(tables, env_kwargs):
     """The observation space of an agent with these ``env_kwargs`` on one of these tables."""
     if shown(env_kwargs)[1] is _as_they_are:
         return tables.single_observation_space
-    size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * bool(tables.options.observe_conditions)
-    return spaces.Box(-1.0, 1.0, (size,), np.float32)
+    constants = 8 * bool(tables.options.observe_conditions)  # of the table
+    return spaces.Box(-1.0, 1.0, (SHOWN + constants,), np.float32)
 
 
 def _as_they_are(observations):

@@ -54,7 +54,7 @@ class Luck:
 
     def note(self, asked: Bools, actions: Floats | Singles) -> None:
         """Add the luck of the strokes that the next step plays with ``actions`` (n, k) on the tables ``asked``, bool (n,)."""
-        told = np.asarray(self._options.rules.actions.check_many(actions, self._tables.n), np.float64)
+        told = np.asarray(self._options.rules.actions.check(actions, self._tables.n), np.float64)
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
             mine, crew = told[rows], self._crew

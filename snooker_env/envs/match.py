@@ -11,17 +11,16 @@ from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
 from .._lib.types import Action, Observation, RenderMode
-from ..game.frame_columns import STRIKER, STROKES
+from ..game.frame_columns import STRIKER
 from ..simulation.shot import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames
-from ..tasks.options import Options, observation_space_of
+from ..tasks.options import Options
 from ..tasks.tables import Crew
-from .arguments import ONE, breakers_of, known_options, starts_of
-from .one_table import OneTable, Record
+from .arguments import ONE, breakers_of, known_options, match_options, match_tables, starts_of
 from .pictures import MODES, SIZE, Pictures
-from .seats import match_options, match_tables
+from .snooker import OneTable
 
 PLAYERS: tuple[str, ...] = ("player_0", "player_1")
 
@@ -53,12 +52,13 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.render_mode = render_mode
         self.tables = match_tables(self.options, seats, 1)
         self.possible_agents, self.agents = list(PLAYERS), []
-        acts = list(zip(PLAYERS, self.tables.actions, strict=True))
-        self.observation_spaces = {name: observation_space_of(self.options, its) for name, its in acts}
+        self.observation_spaces = {name: self.tables.observation_space(k) for k, name in enumerate(PLAYERS)}
+        acts = zip(PLAYERS, self.tables.actions, strict=True)
         self.action_spaces = {name: copy.deepcopy(its.space) for name, its in acts}  # each with its generator
         self.np_random, _ = seeding.np_random()
         self._selected: str | None = None
-        self._record, self._keyed, self._last = Record(full=render_mode is not None), False, None
+        self._last = None
+        self._keep(render_mode is not None)
         names = ("Player 1", "Player 2")
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
 
@@ -77,12 +77,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     @property
     def last_shot(self) -> Shot | None:
         """The ``Shot`` of the last turn, with its path if a history is kept; None if it had no stroke."""
-        return self._record.last_shot if self._last is not None else None
-
-    @property
-    def strokes(self) -> int:
-        """Number of strokes that both players have played in this frame, an int."""
-        return int(self.tables.game[0, STROKES])
+        return self._last_shot if self._last is not None else None
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
         """Return the observation space of a player; the same object each time."""
@@ -153,8 +148,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
         a = self.tables.actions[striker].check(action)
         self._pictures.require_display()
-        crew = Crew(self._record.buffers, self._watch)
-        played = bool(self.tables.turns([np.array([a])] * 2, out, crew)[0])
+        crew = Crew(self._buffers, self._watch)
+        played = bool(self.tables.turns([a[None]] * 2, out, crew)[0])
         self._last = out if played else None
         self._cumulative_rewards[name], gained = 0.0, float(out.rewards[0])
         self.rewards = dict(zip(PLAYERS, (gained, 0.0 - gained), strict=True))

@@ -12,7 +12,7 @@ from ..game.frame_columns import STRIKER
 from ..tasks.frames import Frames
 from ..tasks.options import Options
 from ..tasks.tables import Tables
-from .seats import match_options, match_tables
+from .arguments import match_options, match_tables
 from .vector import SnookerVectorEnv
 
 
@@ -63,10 +63,9 @@ class MatchVectorEnv(SnookerVectorEnv):
         if one != other:
             raise refuse("seats", seats, "must give both players the same actions; match_env takes others")
 
-    _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
-
-    def _tables_of(self, opponent: object, limit: int) -> Tables:
-        return match_tables(self.options, self._differences, self.num_envs)
+    def _game_of(self, given: Options | None, keywords: Any, limit: int) -> tuple[Options, Tables]:
+        options = match_options(given, keywords)
+        return options, match_tables(options, self._differences, self.num_envs)
 
     @property
     def strikers(self) -> Ints:
@@ -83,7 +82,7 @@ class MatchVectorEnv(SnookerVectorEnv):
 
         ``actions`` are the strikers'; observations are of the players whose turn it is now; rewards float64 (num_envs, 2)."""
         tables = self.tables
-        told = tables.actions[0].check_many(actions, self.num_envs)
+        told = tables.actions[0].check(actions, self.num_envs)
         self._require_begun()
         written = tables.output()
         with self._playing():

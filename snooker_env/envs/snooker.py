@@ -1,4 +1,4 @@
-"""What is ``Snooker-v0``? The Gymnasium environment of one table."""
+"""What is ``Snooker-v0``? The Gymnasium environment of one table, and what that of two players shares with it."""
 
 import copy
 from collections.abc import Sequence
@@ -8,35 +8,158 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.types import Action, Bools, Observation, RenderMode
+from .._lib.check import truth
+from .._lib.types import Action, Bools, Floats, Observation, RenderMode
+from ..game.balls import BallOn
+from ..game.frame import Frame
+from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
+from ..physics.parameters import Physics
+from ..simulation.shot import Shot
 from ..tasks import observations
-from ..tasks.options import Options, observation_space_of
+from ..tasks.frames import Frames
+from ..tasks.options import Options
+from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
-from ..tasks.tables import Crew, StepOutput
-from .arguments import ONE, breakers_of, known_options, starts_of
-from .one_table import OneTable, Record
-from .pictures import MODES, SIZE, Pictures
-from .seats import game_of, tables_of
+from ..tasks.tables import Crew, StepOutput, Tables
+from .arguments import ONE, Start, begin_at, breakers_of, game_of, known_options, starts_of, tables_of
+from .pictures import MODES, SIZE, Picture, Pictures
+
+
+class OneTable:
+    """An environment with one table: ``SnookerEnv``, and ``MatchEnv`` with two players."""
+
+    options: Options
+    tables: Tables  # the one table: ``tasks.tables.Tables``
+    np_random: np.random.Generator
+    render_mode: str | None
+    _np_random_seed: int | None
+    _pictures: Pictures
+    _full: bool  # whether a history is kept
+    _buffers: ShotBuffers  # work space in which the strokes are played
+    _strokes: list[Played]  # of both players since the reset; empty unless a history is kept
+    _last_shot: Shot | None = None
+    _keyed = False  # has the table's stream a key?
+
+    @property
+    def positions(self) -> Floats:
+        """Centres of the balls [m], float64 (22, 2), a copy: the cue ball, 15 reds, yellow to black."""
+        return self.tables.positions[0].copy()
+
+    @property
+    def on_table(self) -> Bools:
+        """Which balls are on the table, bool (22,); a copy."""
+        return self.tables.on_table[0].copy()
+
+    @property
+    def ball_on(self) -> BallOn:
+        """What must be struck first, a ``BallOn``."""
+        return BallOn(self.tables.game[0, BALL_ON])
+
+    @property
+    def in_hand(self) -> bool:
+        """Whether the cue ball is in hand, a bool."""
+        return bool(self.tables.game[0, IN_HAND])
+
+    @property
+    def points(self) -> int:
+        """Points of the visit so far, an int; in a frame those of the striker's break."""
+        return int(self.tables.game[0, POINTS])
+
+    @property
+    def over(self) -> bool:
+        """Whether there is no stroke to play: the episode has ended, was stopped, or has not begun."""
+        return bool(self.tables.are_over()[0])
+
+    @property
+    def frame(self) -> Frame | None:
+        """The current ``snooker_env.game.frame.Frame``; None in a visit."""
+        return self.tables.frame(0) if isinstance(self.tables, Frames) else None
+
+    @property
+    def physics(self) -> Physics:
+        """The physical constants of this episode's table, a ``Physics``."""
+        return self.tables.physics_of(0)
+
+    # strokes
+
+    @property
+    def last_shot(self) -> Shot | None:
+        """The agent's last ``Shot``, None before the first; with a history that of either player."""
+        return self._last_shot
+
+    @property
+    def history(self) -> list[Played]:
+        """Both players' ``Played`` strokes since the last reset, a list; empty unless ``keep_history``."""
+        return list(self._strokes)
+
+    @property
+    def keep_history(self) -> bool:
+        """Whether ``history`` is kept, with all paths; always with a render mode. False forgets it."""
+        return self._full
+
+    @keep_history.setter
+    def keep_history(self, value: bool) -> None:
+        full = truth("keep_history", value) or self.render_mode is not None
+        if full != self._full:
+            self._keep(full)
+
+    def _keep(self, full: bool) -> None:
+        """Keep a ``full`` history from now on, with all paths, or the last ``Shot`` alone."""
+        self._full, self._buffers, self._strokes = full, ShotBuffers(1, path=full), []
+
+    def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
+        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
+        if self._full:
+            self._strokes.append(self.tables.record(k, buffers, j))
+            self._last_shot = self._strokes[-1].shot
+        elif mine:
+            self._last_shot = self.tables.shot(k, buffers, j)
+
+    def render(self) -> Picture:
+        """Return a ``Picture``, with the paths of the last shot."""
+        return self._pictures.render(self.tables, 0, self._strokes)
+
+    def _show(self, *, played: bool = False) -> None:
+        self._pictures.show(self.tables, self._strokes, played=played)
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        self._pictures.close()
+
+    # states
+
+    def get_state(self) -> dict[str, Any]:
+        """Return everything between two shots as JSON types, see docs/environment/specification.md."""
+        return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Restore a result of ``get_state``; ValueError if it is invalid: then nothing has changed."""
+        self._begin_at(self.tables.check_state(state, self.np_random), seeded=False)
+        self._begin()
+
+    def _begin(self) -> None:
+        """A new episode begins on the table."""
+        self._strokes, self._last_shot = [], None
+
+    def _begin_at(self, start: Start | None, *, seeded: bool) -> None:
+        if begin_at(start, self.tables, 0, self.np_random, seeded=seeded, keyed=self._keyed):
+            self._np_random_seed = -1  # Gymnasium's number for "not from a seed"
+        self._keyed = True
 
 
 class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     """Shot selection in snooker: one step is one whole shot, simulated until all balls rest and then judged.
 
-    docs/environment/specification.md is the specification, with each formula, entry and key. In short:
+    ``Options`` says what can be chosen, docs/environment/specification.md each formula, entry and key. By default:
 
-    * **Task.** "visit" (default): a break until the first stroke that pots nothing, a foul or a clearance; "frame",
-      against ``opponent``: a step is a stroke and all of the opponent's after it; "match": the best of ``frames``.
+    * **Task.** A visit: a break until the first stroke that pots nothing, a foul or a clearance. In a frame a step is a
+      stroke and all of the opponent's after it.
     * **Action.** ``Box(-1, 1, (4,), float32)``: cue speed, side, top and the pot, whose aim is solved. All 0: the widest
-      pot, no spin. Longer with ``elevation``, ``placement`` and ``says``. Values up to 1e-6 outside are clipped, as
-      rounding; others are refused. ``action="discrete"``: ``Discrete(540)`` or more; ``action_masks()`` are the available.
-    * **Observation.** Of a visit ``Box(-1.1, 1.1, (61,), float32)``: the four widest pots, the cue ball, the state. Of a
-      frame, or "flat", ``Box(-1.1, 1.1, (121,), float32)``: all balls, the state; a frame appends 19 numbers, a miss rule
-      66 more. "balls": the same as ``Dict(balls=(22, 5), state=(11,))``. "masked", of discrete actions:
-      ``Dict(observations, action_mask)``.
-    * **Reward.** "points" (default): of the stroke, of a frame the growth of the lead; or of a visit
-      "points_and_fouls", "pots", "legal", of a frame "win", of a match "frames".
-    * **Episode.** A frame is truncated after ``max_strokes`` strokes of both players; ``one_stroke=True``: it ends
-      after one step. ``reset(options=...)`` takes "state", "position" or "breaker" (0 the agent, 1 the opponent).
+      pot, no spin. Values up to 1e-6 outside are clipped, as rounding; others are refused.
+    * **Observation.** ``Box(-1.1, 1.1, (61,), float32)``: the four widest pots, the cue ball, the state. Of a frame, or
+      "flat", (121,): all balls, the state; a frame appends 19 numbers, a miss rule 66 more.
+    * **Reward.** The points of the stroke, in a frame the growth of the lead.
+    * **Episode.** ``reset(options=...)`` takes "state", "position" or "breaker" (0 the agent, 1 the opponent).
 
     Parameters
     ----------
@@ -70,14 +193,13 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     ):
         self.options, opponent = game_of(options, keywords)
         self.tables = tables_of(self.options, opponent, 1)
-        self.action_space: spaces.Space[Any] = copy.deepcopy(
-            self.options.rules.actions.space
-        )  # with its own generator
-        self.observation_space: spaces.Space[Any] = observation_space_of(self.options)
+        own = copy.deepcopy(self.options.rules.actions.space)  # with its own generator
+        self.action_space: spaces.Space[Any] = own
+        self.observation_space: spaces.Space[Any] = self.tables.observation_space()
         self.render_mode = render_mode
         names = ("Agent",) if self.options.task == "visit" else ("Agent", "Opponent")
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
-        self._record, self._keyed = Record(full=render_mode is not None), False
+        self._keep(render_mode is not None)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -111,7 +233,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         self._pictures.require_display()
         out = tables.output()
         try:
-            tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
+            tables.step(a[None], np.zeros(1, np.bool_), out, self._crew())
         except BaseException:
             tables.interrupt()
             raise
@@ -131,4 +253,4 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         self._show(played=True)
 
     def _crew(self) -> Crew:
-        return Crew(self._record.buffers, self._watch)
+        return Crew(self._buffers, self._watch)

@@ -1,6 +1,4 @@
-"""How do thousands of tables play side by side? As kernels, on several threads.
-
-gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")"""
+"""How do thousands of tables play side by side? As kernels, on several threads."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -18,14 +16,23 @@ from numpy.typing import ArrayLike
 from .._lib.check import integer
 from .._lib.types import Bools, Floats, Observation
 from ..tasks import observations
-from ..tasks.options import NEVER, Options, observation_space_of
+from ..tasks.options import NEVER, Options
 from ..tasks.played import Played
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
-from .arguments import MANY, begin_at, breakers_of, known_options, mask_of, seeds_of, starts_of
+from .arguments import (
+    MANY,
+    begin_at,
+    breakers_of,
+    game_of,
+    known_options,
+    mask_of,
+    seeds_of,
+    starts_of,
+    tables_of,
+)
 from .pictures import SIZE, Picture, Pictures
-from .seats import game_of, tables_of
 from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
@@ -92,12 +99,12 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         self.render_mode = render_mode
-        self.options, opponent = self._game_of(options, keywords)
         limit = NEVER if max_episode_steps is None else max_episode_steps
-        self.tables = self._tables_of(opponent, integer("max_episode_steps", limit, 1, NEVER))
-        actions = self.tables.actions[0]
-        self.single_action_space: spaces.Space[Any] = copy.deepcopy(actions.space)  # with its own generator
-        self.single_observation_space: spaces.Space[Any] = observation_space_of(self.options, actions)
+        limit = integer("max_episode_steps", limit, 1, NEVER)
+        self.options, self.tables = self._game_of(options, keywords, limit)
+        own = copy.deepcopy(self.tables.actions[0].space)  # with its own generator
+        self.single_action_space: spaces.Space[Any] = own
+        self.single_observation_space: spaces.Space[Any] = self.tables.observation_space()
         self.action_space: spaces.Space[Any] = batch_space(self.single_action_space, n)
         self.observation_space: spaces.Space[Any] = batch_space(self.single_observation_space, n)
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, modes=PICTURES)
@@ -108,10 +115,9 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._recent: list[list[Played]] = [[] for _ in range(n)]  # of the last step or reset, if shown
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    _game_of = staticmethod(game_of)  # the options, and who sits opposite the agent
-
-    def _tables_of(self, opponent: object, limit: int) -> Tables:
-        return tables_of(self.options, opponent, self.num_envs, limit)
+    def _game_of(self, given: Options | None, keywords: Any, limit: int) -> tuple[Options, Tables]:
+        options, opponent = game_of(given, keywords)
+        return options, tables_of(options, opponent, self.num_envs, limit)
 
     @property
     def positions(self) -> Floats:
@@ -165,7 +171,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         "final_info"), rewards float64 (num_envs,), terminations and truncations bool (num_envs,). ValueError
         for an action outside the space, ResetNeeded before the first reset, and with DISABLED if an episode
         is over: then nothing is played. After a SimulationError all tables need a reset."""
-        a = self.options.rules.actions.check_many(actions, self.num_envs)
+        a = self.options.rules.actions.check(actions, self.num_envs)
         self._require_begun()
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
@@ -252,8 +258,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        last, reals, counts = out.last
-        each = observations.arrange(self.options.rules.observation, last, out.last_masks)
+        last, reals, counts, masks = out.last
+        each = observations.arrange(self.options.rules.observation, last, masks)
         if isinstance(each, dict):
             each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)

@@ -113,7 +113,7 @@ class Planner:
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         at, which = self._read(positions, rows)
-        told = self.rules.actions.check_many(cast(ArrayLike, actions), len(which))
+        told = self.rules.actions.check(cast(ArrayLike, actions), len(which))
         return self._play(at[which], told, _streams(keys, len(which), self.rules.noise.silent), None)
 
     def play_strokes(
@@ -167,7 +167,7 @@ class Planner:
         ``Positions`` that they are played from, with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = integers("rows", rows, 0, len(at) - 1)
-        told = self.rules.actions.check_many(cast(ArrayLike, actions), len(which))
+        told = self.rules.actions.check(cast(ArrayLike, actions), len(which))
         return decode(self.rules, at, which, told)
 
     def pot_aim(

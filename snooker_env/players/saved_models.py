@@ -17,7 +17,7 @@ from .._lib.install import missing
 from .._lib.notices import say
 from .._lib.types import Bools, Ints, Observation
 from ..tasks.foreseen import STATES
-from ..tasks.observations import OBSERVATIONS, STROKE_SIZE, space
+from ..tasks.observations import OBSERVATIONS, STROKE_SIZE, size_of, space
 from ..tasks.options import Options
 from ..tasks.stroke_menu import SPEEDS, speeds_of
 from .seen import SeenPlayer
@@ -193,8 +193,8 @@ class FittingModel:
                 if kind == "strokes" and not replaced:
                     model.options.setdefault("speeds", _speeds_seen(saved.observation, frame) or SPEEDS)
                 many, speeds = getattr(model.actions, "n", 0), model.options.get("speeds", SPEEDS)
-                shown = space(kind, frame=frame, replaced=replaced, choices=many, speeds=speeds)
-                if outline(shown) == saved.observation:
+                size = size_of(kind, frame, replaced=replaced, speeds=speeds)
+                if outline(space(kind, size, many)) == saved.observation:
                     if outline(model.actions) != saved.action:
                         told = "give the options of its training, for example placement=True"
                         raise saved.refuse_file(f"must be a model whose actions are {model.actions}: {told}")

@@ -146,7 +146,7 @@ class SeenPlayer(BoundPlayer):
             if actions.ndim == 0 or len(actions) != n:
                 allowed = f"must be {n}, one for each position"
                 raise refuse_what("actions", f"array of shape {actions.shape}", allowed)
-            return rules.actions.check_many(actions, n)
+            return rules.actions.check(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: act(...) returned {error}") from None
 

@@ -6,7 +6,6 @@ from .discrete_actions import SIZE as CHOICES
 from .noise import LEVELS, Noise
 from .observations import OBSERVATIONS, STATE_ENTRIES
 from .observations import SIZE as OBSERVATION_SIZE
-from .observations import space as observation_space
 
 __all__ = [
     "CHOICES",
@@ -23,5 +22,4 @@ __all__ = [
     "TOPS",
     "Noise",
     "choice_of",
-    "observation_space",
 ]

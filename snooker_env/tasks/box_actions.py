@@ -8,7 +8,7 @@ from gymnasium import spaces
 
 from .._lib.check import choice, number, refuse, refuse_what, truth
 from .._lib.jit import kernel
-from .._lib.types import Action, Floats
+from .._lib.types import Floats
 from ..game.pots import GHOST_X, GHOST_Y, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
@@ -83,20 +83,13 @@ def shot_of(a, positions, on_table, on, options, law, work):
 class Actions:
     """The box action space: speed, side, top, aim, then elevation, place in the D (two), nomination, decision, declaration."""
 
-    aim: str
-    elevation: bool
     steepest: float  # the elevation that 1 means [rad]
-    placement: bool
-    says: tuple[str, ...]  # some of ``SAYS``, in their order
-    declares: bool  # whether the last component is a declaration
-    space: spaces.Box
-    size: int  # components of an action
 
     def __init__(
         self, aim: str, elevation: bool | float = False, placement: bool = False, says: Collection[str] = ()
     ):
-        self.aim = choice("aim", aim, AIMS)
-        self.placement = truth("placement", placement)
+        self.aim: str = choice("aim", aim, AIMS)
+        self.placement: bool = truth("placement", placement)
         if isinstance(elevation, (bool, np.bool_)):
             self.steepest = MAX_ELEVATION if elevation else 0.0
         else:
@@ -104,32 +97,16 @@ class Actions:
                 self.steepest = radians(number("elevation", elevation, 5.0, 70.0))
             except ValueError:
                 raise refuse("elevation", elevation, "must be True or False, or degrees in [5, 70]") from None
-        self.elevation = self.steepest > 0.0
-        self.says = tuple(name for name in SAYS if name in says)
-        self.declares = any(name in self.says for name in DECLARES)
+        self.elevation: bool = self.steepest > 0.0
+        self.says: tuple[str, ...] = tuple(name for name in SAYS if name in says)
+        self.declares: bool = any(name in self.says for name in DECLARES)  # by the last component
         said = ("nominate" in says) + ("decision" in says) + self.declares
-        self.size = 4 + self.elevation + 2 * self.placement + said
-        self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
+        self.size: int = 4 + self.elevation + 2 * self.placement + said  # components of an action
+        self.space: spaces.Box = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
 
-    def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1].
-
-        Components up to ``ROUNDING`` outside are clipped."""
-        a = self._read("action", action, (self.size,)).tolist()
-        if not all(abs(x) <= 1.0 + ROUNDING for x in a):  # NaN fails too
-            raise refuse("action", a, _BOUNDS)
-        return [min(max(x, -1.0), 1.0) for x in a]
-
-    def check_many(self, actions: object, n: int) -> Floats:
-        """The actions of n tables, float64 (n, size), as ``check``; ValueError names the first invalid one."""
-        a = self._read("actions", actions, (n, self.size))
-        sound = np.abs(a) <= 1.0 + ROUNDING  # NaN is not
-        if not sound.all():
-            k = int(np.argmin(sound.all(axis=1)))
-            raise refuse(f"actions[{k}]", a[k].tolist(), _BOUNDS)
-        return a.clip(-1.0, 1.0, out=a)
-
-    def _read(self, field: str, actions: object, shape: tuple[int, ...]) -> Floats:
+    def check(self, actions: object, n: int | None = None) -> Floats:
+        """One action (size,), or those of n tables (n, size): float64, clipped if up to ``ROUNDING`` outside; ValueError for others."""
+        field, shape = ("action", (self.size,)) if n is None else ("actions", (n, self.size))
         allowed = f"must have shape {shape}, real numbers"
         try:
             a = np.asarray(actions)
@@ -139,7 +116,13 @@ class Actions:
             raise refuse(field, actions, allowed)
         if a.shape != shape:
             raise refuse_what(field, f"array of shape {a.shape}", allowed)
-        return a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
+        a = a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
+        far = np.abs(a)
+        if not (most := far.max()) <= 1.0 + ROUNDING:  # NaN is not, either
+            k = int(np.argmin((far <= 1.0 + ROUNDING).all(axis=-1)))
+            bad = ("action", a) if n is None else (f"actions[{k}]", a[k])
+            raise refuse(bad[0], bad[1].tolist(), _BOUNDS)
+        return a.clip(-1.0, 1.0, out=a) if most > 1.0 else a
 
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""

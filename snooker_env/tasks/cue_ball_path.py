@@ -135,13 +135,6 @@ def _run(positions, on_table, skip, law, work, out):
     out[X], out[Y] = x, y
 
 
-@kernel
-def played_in_room(stroke, positions, on_table, cue_law):
-    """A stroke (5,), its cue raised as it must be, as ``stroke_in_room``."""
-    with_tip = stroke[0], stroke[1], stroke[2], stroke[4]
-    return stroke_in_room(stroke[3], with_tip, positions, on_table, cue_law)
-
-
 @kernel(seconds=1)
 def _meet(played, ball, positions, cue_law, work, out):
     """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether, the ball's velocity and spin.
@@ -195,7 +188,8 @@ def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     out[MISSED], its[NEAR] = 2.0, 9.0
     if ball == 0:
         return 0
-    played = played_in_room(stroke, positions, on_table, cue_law)
+    with_tip = stroke[0], stroke[1], stroke[2], stroke[4]
+    played = stroke_in_room(stroke[3], with_tip, positions, on_table, cue_law)
     met, other, spin = _meet(played, ball, positions, cue_law, work, out)
     if not met:
         return 0
@@ -248,7 +242,7 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
         own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        played = played_in_room(tried, p, here, its)
+        played = stroke_in_room(tried[3], (tried[0], tried[1], tried[2], tried[4]), p, here, its)
         foresee_pot(played, (ball, pots[i, 1]), p, here, its, work, out[j])
         on[j] = leave(ball, ball_on[k], p, here, after[j], there[j])
         after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]

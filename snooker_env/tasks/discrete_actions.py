@@ -171,24 +171,20 @@ class Choices:
         self.choices = SIZE * (1 + declarations.COLOURS * ("nominate" in says)) + declares
         self.declares, self.space = declares > 0, spaces.Discrete(self.choices)
 
-    def check(self, action: Action) -> list[float]:
-        """The choice in a list; ValueError unless it is an integer in [0, choices)."""
-        a = np.asarray(action)
-        if a.dtype.kind not in "iu" or a.size != 1 or not 0 <= a.item() < self.choices:
-            raise refuse("action", action, f"must be an integer in [0, {self.choices})")
-        return [float(a.item())]
-
-    def check_many(self, actions: ArrayLike, n: int) -> Floats:
-        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid one."""
+    def check(self, actions: Action | ArrayLike, n: int | None = None) -> Floats:
+        """One choice (1,), or those of n tables (n, 1), as float64; ValueError names the first that is none."""
         a = np.asarray(actions)
-        if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
+        whole = a.dtype.kind in "iu"
+        if n is None:
+            if not whole or a.size != 1 or not 0 <= a.item() < self.choices:
+                raise refuse("action", actions, f"must be an integer in [0, {self.choices})")
+            return a.astype(np.float64).reshape(1)
+        if not whole or a.shape not in ((n,), (n, 1)):
             raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")
-        a = a.reshape(n)
-        wrong = (a < 0) | (a >= self.choices)
-        if wrong.any():
-            k = int(np.argmax(wrong))
-            raise refuse(f"actions[{k}]", int(a[k]), f"must be in [0, {self.choices})")
-        return a.astype(np.float64).reshape(n, 1)
+        a = a.reshape(n, 1)
+        for k in np.flatnonzero((a < 0) | (a >= self.choices))[:1].tolist():
+            raise refuse(f"actions[{k}]", int(a[k, 0]), f"must be in [0, {self.choices})")
+        return a.astype(np.float64)
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""

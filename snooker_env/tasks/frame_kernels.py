@@ -1,6 +1,5 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos.
-Row j of a shot's arrays belongs to table which[j]. ``tables``, ``saved``, ``shots``, ``output`` and ``setting`` are
-plain tuples of the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos. Arrays come as plain tuples of
+the fields of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``; shot j is on table which[j]."""
 
 from typing import NamedTuple
 
@@ -25,7 +24,7 @@ from .box_actions import tip_on_disc
 from .kernel_arrays import C_END_MASS, C_MAX_OFFSET, OutputArrays, PlayedArrays, StruckArrays, TableArrays
 from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, frame_reward_of
-from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, keep_last, write_empty_info, write_stroke_info
+from .tables import COUNTS, I_BREAK, I_FOULS, REALS, Tables, write_empty_info, write_stroke_info
 
 AGENT = 0
 _OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
@@ -76,12 +75,8 @@ def say(k, declared, decision, reward, tables, saved):
     elif row[columns.PHASE] == columns.CHOICE:
         columns.choose(row, decision)
         if decision == columns.REPLACE:
-            p, on, back, back_on = (
-                tables.positions[k],
-                tables.on_table[k],
-                saved.positions[k],
-                saved.on_table[k],
-            )
+            p, on = tables.positions[k], tables.on_table[k]
+            back, back_on = saved.positions[k], saved.on_table[k]
             for i in range(N_BALLS):
                 p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
         return decision == columns.PLAY or decision == columns.PLACE_ANYWHERE
@@ -313,14 +308,12 @@ def begin(which, breakers, in_hand, on_table, game):
 
 
 @entry(what="the resets of frames", seconds=1)
-def show(which, fresh, player, tables, saved, setting, replies, output, last):
-    """Write the results of a reset as ``player`` sees the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
+def show(which, player, tables, saved, setting, replies, output):
+    """Write the results of a reset as ``player`` sees the tables ``which``."""
     tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
-        if fresh:
-            keep_last(k, out, last)
         write_empty_info(k, out, tables.game[k, columns.BALL_ON])
         _write_frame_info(k, tables.game[k], player, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, player)
@@ -370,17 +363,16 @@ def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> None:
     for j in np.flatnonzero((b.status[:m] == _OK) & (b.seen[:m, stroke.ATTEMPT] == 0)).tolist():
         k = int(which[j])
         p, here, row = tables.positions[k], tables.on_table[k], tables.game[k]
-        world, one, at = tables.world(k), b, j
+        one, at = b, j
         if not b.segments.shape[1]:
-            one, at = stroke.play_again(b, j, b.log, (p, here), world, path=True), 0
+            one, at = tables.play_again(k, here, j, b, b.log, path=True), 0
         gap = gap_of(p, here, row, one.played, (one.segments, one.n_segments), at)
         placed, on = row[columns.IN_HAND] or row[columns.ANYWHERE], tables.on(k)
         if gap > ATTEMPT_GAP and not placed and shut_in(p, here, on, *cushions, BALL_RADIUS):
+            # no ball on can be hit: those ahead stay
             ahead = (p - p[CUE]) @ b.shots[j, [stroke.VX, stroke.VY]] > 0.0
-            only = (
-                here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
-            )  # no ball on can be hit: those ahead stay
+            only = here & (on >> np.arange(N_BALLS) & 1 > 0) & ahead
             only[CUE] = True
-            one = stroke.play_again(b, j, b.log, (p, only), world, path=True)
+            one = tables.play_again(k, only, j, b, b.log, path=True)
             gap = gap_of(p, only, row, one.played, (one.segments, one.n_segments), 0)
         b.seen[j, stroke.ATTEMPT] = gap <= ATTEMPT_GAP

@@ -1,8 +1,5 @@
-"""How is a frame played, on one table or on thousands? Turns of two players, each table on its own.
-
-A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the referee,
-``frame_kernels.conclude``. A step is the turn of the agent, player 0, and all turns of the opponent, player 1, up to the
-agent's next one. If a frame ends in the opponent's first visit, the next step plays nothing and reports it (``Frames.due``)."""
+"""How is a frame played, on one table or on thousands? A step is a turn of the agent, player 0, and all of the opponent's after
+it. In a turn ``frame_kernels`` ``decide`` and ``conclude``, the referee, before and after ``stroke.address`` and ``stroke.run``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,24 +14,21 @@ from ..game.balls import CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.fouls import AUTO
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
-from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from . import frame_kernels
 from .box_actions import Actions
 from .discrete_actions import Choices
-from .foreseen import Errors
 from .frame_kernels import AGENT
 from .noise import Noise
-from .observations import BALLS_SIZE, FRAME_SIZE, REPLACED_SIZE, STROKE_SIZE
-from .options import NEVER, Options, Rules
+from .options import NEVER, Rules
 from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, check_frame_state
 from .stroke import ShotBuffers
-from .stroke_menu import menu_size
 from .tables import I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables, uniform
 from .visit import Visits
 
 OPPONENT = 1 - AGENT  # index of the opponent in the frame, and of its seat
+_OF_FRAMES = ("strokes", "opponent_strokes", "winner")
 _OF_MATCHES = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
 Asked: TypeAlias = tuple[Floats, Floats, Ints, Ints, Ints]
 """Of n tables: strokes (n, 5), places of cue balls in hand (n, 2), nominations, decisions and declarations (n,)."""
@@ -79,41 +73,24 @@ class Frames(Tables):
 
     REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
-    COUNTS: tuple[str, ...] = (
-        *Tables.COUNTS,
-        "strokes",
-        "opponent_strokes",
-        "winner",
-        *FLAGS,
-        "misses",
-        "failures",
-    )
-    SIZE = FRAME_SIZE
+    COUNTS: tuple[str, ...] = (*Tables.COUNTS, *_OF_FRAMES, *FLAGS, "misses", "failures")
     COLUMNS = columns.COLUMNS
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
     declined; AUTO, as always between two strokes: the colour first struck. Unchecked."""
-    due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
+    due: Bools  # (n,) which ended in the opponent's first visit: the next step plays nothing and reports it
     through: Bools  # (n,) which episodes of one stroke have ended
     seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
 
-    def __init__(
-        self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
-    ):
-        rules = rules.rules if isinstance(rules, Options) else rules
+    def __init__(self, rules: Rules, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None):
         if rules.frames:
             self.COUNTS = (*self.COUNTS, "frames_won", "opponent_frames", "frame")
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
-        self._saved_positions = np.zeros((n, N_BALLS, 2))
-        self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
+        self._saved_positions, self._saved_on_table = self.positions.copy(), self.on_table.copy()
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, (self.due, self.through) = np.full(n, AUTO, np.int64), np.zeros((2, n), np.bool_)
-        if rules.observation == "strokes":
-            self.SIZE += STROKE_SIZE * menu_size(rules.speeds, True) - BALLS_SIZE
-        elif rules.miss != "off":
-            self.SIZE += REPLACED_SIZE
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
         limits = limit, rules.max_strokes, rules.one_stroke, won, game.clock
@@ -128,11 +105,8 @@ class Frames(Tables):
 
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
-        self.seats, rules, real = tuple(seats), self.rules, self.rules.cue == "real"
-        self.actions: tuple[Actions | Choices, ...] = tuple(seat.actions for seat in seats)
-        self.noises: tuple[Noise, ...] = tuple(seat.noise for seat in seats)
-        self._own = tuple((seat.actions.pack(), seat.noise.pack(BALL_RADIUS, real=real)) for seat in seats)
-        self._errors = tuple(Errors.of(noise, rules.physics, rules.speeds) for noise in self.noises)
+        self.seats = tuple(seats)
+        self._read(tuple(seat.actions for seat in seats), tuple(seat.noise for seat in seats))
         # the winner of the lot is asked if either player can say who begins
         self._lot = any("lot" in seat.actions.says for seat in self.seats)
 
@@ -240,7 +214,7 @@ class Frames(Tables):
         crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
         out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
-        crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
+        crew(np.flatnonzero(~going), lambda which, _: self._show(which, out))
         return self._played > 0
 
     def go_on(self, which: Ints) -> None:
@@ -288,7 +262,7 @@ class Frames(Tables):
             crew(playing, lambda which, _: self._finish(which, out))
         if same_step:
             ended = np.flatnonzero(out.terminated | out.truncated)
-            out.keep_masks(ended)
+            out.keep_last(ended)
             self._start(ended, out, crew)
         elif anew:
             self._start(np.flatnonzero(waiting), out, crew)
@@ -316,7 +290,7 @@ class Frames(Tables):
         """See ``Tables.reset``. ``breakers``: see ``deal``."""
         self.begun[wanted] = False  # until the opponent has played, if it breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
-        crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
+        crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out))
 
     def _start(self, which, out, crew, breakers=None):
         """New frames, with the opponent's first visit if it breaks."""
@@ -330,7 +304,7 @@ class Frames(Tables):
                 self.begun[which] = False
                 raise
         self.due[which] = self.are_over()[which]
-        crew(which, lambda part, _: self._show(part, out, fresh=True))
+        crew(which, lambda part, _: self._show(part, out))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
         """New frames on ``which``. The agent breaks or, if ``drawn``, ``breakers`` (n,); without them by lot, of one stroke the agent."""
@@ -348,14 +322,14 @@ class Frames(Tables):
         self.due[which] = self.through[which] = False
         self.draw_conditions(which)
 
-    def _show(self, which, out, *, fresh):
-        frame_kernels.show(which, fresh, AGENT, *self._parts, self._replies, out.arrays, out.last)
+    def _show(self, which, out):
+        frame_kernels.show(which, AGENT, *self._parts, self._replies, out.arrays)
         self.show_rest(which, out)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: output of the last stroke."""
         out, first = self.output(), np.zeros(1, np.int64)  # the entries that depend on the player
-        frame_kernels.show(first, False, player, *self._parts, self._replies, out.arrays, out.last)
+        frame_kernels.show(first, player, *self._parts, self._replies, out.arrays)
         if self.rules.drawn:
             out.reals[:, -CONDITIONS:] = self.conditions
         if last is not None:
@@ -440,17 +414,6 @@ class Frames(Tables):
         write_frame(frame, 0, self.game[k], self.layouts_before, k)
         self._replies[k], self.begun[k], self.nominated[k] = 0, True, AUTO
         self.due[k] = self.through[k] = False
-
-    def text(self, k: int) -> str:
-        frame = self.frame(k)
-        on = frame.ball_on.name.lower().replace("_", " ")
-        ended = "" if frame.winner is None else f"   player {frame.winner} wins"
-        won = self.game[k, _OF_MATCHES].tolist()
-        match = f"frames {won[0]} - {won[1]}   " if self.rules.frames else ""
-        return (
-            match
-            + f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
-        )
 
 
 TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Frames}

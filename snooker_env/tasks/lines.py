@@ -1,6 +1,5 @@
-"""Along which lines may the cue ball be sent? To the direct pots; else, best first: at the start of a frame thin at the end
-red of either side; where hardly anything is seen, escapes; the middle of the widest window of directions in which a ball on
-is met first, its two edges, thin, and the middles of other windows."""
+"""Along which lines may the cue ball be sent? To direct pots; else, best first: at the start of a frame thin at either end red;
+escapes where hardly anything is seen; the middle and the edges of the widest window, thin, and the middles of others."""
 
 from math import atan2, cos, hypot, pi, sin
 

@@ -88,21 +88,7 @@ def drawn_errors(stream, noise):
 
 @kernel
 def execute_stroke(speed, side, top, aim, elevation, noise, stream):
-    """A shot with its execution errors. An inner kernel.
-
-    Parameters
-    ----------
-    speed, side, top, aim, elevation : float
-        The intended cue speed [m/s], tip offset over R, direction and elevation of the cue [rad].
-    noise, stream : numpy.ndarray
-        float64 (k,), standard deviations of the errors, as ``Noise.pack`` returns them; uint64 (2,), key and
-        counter of a stream of random numbers: three blocks are drawn, or nothing without errors.
-
-    Returns
-    -------
-    speed, side, top, aim, elevation : float
-        The shot as executed, in the same units.
-    """
+    """A shot with its execution errors: three blocks are drawn from the stream, or nothing without errors."""
     if noise[N_SILENT]:
         return speed, side, top, aim, elevation
     return with_errors(speed, side, top, aim, elevation, drawn_errors(stream, noise), noise)

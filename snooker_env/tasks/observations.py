@@ -7,18 +7,17 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._lib.check import choice, refuse
+from .._lib.check import refuse
 from .._lib.jit import kernel
 from .._lib.types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.conditions import COLUMNS as CONDITIONS_SIZE
-from .declarations import STROKE_CHOICES
 from .lines import POTS
 from .noise import Spread
 from .pot_chance import plain_chance
-from .stroke_menu import SPEEDS, menu_size
+from .stroke_menu import menu_size
 
 OBSERVATIONS: tuple[ObservationKind, ...] = ("pots", "flat", "balls", "masked", "strokes")
 """The kinds of observations: one array of pots, or of balls; a dict of two; a dict of the flat one and the available
@@ -70,66 +69,6 @@ View = namedtuple("View", "pots spread rails")
 """How visits are observed: whether pots are, in place of the balls; the player's ``Spread`` at ``SHOWN_SPEED``; rails as in a
 cue's row."""
 FLAT = View(False, Spread(1.0), np.empty(0))  # the balls
-
-
-def space(
-    kind: ObservationKind,
-    *,
-    frame: bool = False,
-    replaced: bool = False,
-    choices: int = STROKE_CHOICES,
-    conditions: bool = False,
-    speeds: int = SPEEDS,
-) -> spaces.Box | spaces.Dict:
-    """Return the observation space.
-
-    Parameters
-    ----------
-    kind : {"pots", "flat", "balls", "masked", "strokes"}
-        "pots": a Box (61,), of visits alone; "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and
-        "state" (11,); "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,),
-        int8 in {0, 1}; "strokes": a Box (2495,), of a frame (3664,).
-    frame, replaced : bool, optional
-        Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
-        that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
-    choices : int, optional
-        Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
-    conditions : bool, optional
-        Whether the 8 constants of the table follow last, in the order of ``physics.conditions.RANGES``, or the
-        box "conditions" (8,). Default False.
-    speeds : int, optional
-        Cue speeds along each pot of the menu. Default 9.
-
-    Returns
-    -------
-    gymnasium.spaces.Box or gymnasium.spaces.Dict
-        float32, and the mask. The bounds are 1.1 wherever there are balls, which may lie in the mouths of
-        pockets; all other numbers are in [-1, 1].
-
-    Examples
-    --------
-    >>> from snooker_env.tasks import observation_space
-    >>> observation_space("flat").shape
-    (121,)
-    """
-    choice("observation", kind, OBSERVATIONS[frame:])
-    entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
-    balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
-    state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
-    if kind == "balls":
-        parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
-        if replaced:
-            parts["replaced"] = spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)
-        if conditions:
-            parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
-        return spaces.Dict(parts)
-    more = REPLACED_SIZE * (replaced and kind != "strokes") + CONDITIONS_SIZE * conditions
-    menu = STROKE_SIZE * menu_size(speeds, frame) + entries
-    size = {"pots": POTS_SIZE, "strokes": menu}.get(kind, BALLS_SIZE + entries)
-    flat = spaces.Box(-REACH, REACH, (size + more,), np.float32)
-    if kind == "masked":
-        return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
-    return flat
 
 
 @kernel
@@ -197,8 +136,29 @@ def observe_pots_into(row, positions, on_table, ball_on, on, in_hand, points, vi
     observe_state_into(row, at + 2, on_table, ball_on, in_hand, points)
 
 
+def size_of(kind: str, frame: bool, *, replaced: bool, speeds: int, conditions: bool = False) -> int:
+    """Numbers in an observation; ``replaced``: whether it holds the layout that "replace" restores, if of balls."""
+    entries = len(STATE_ENTRIES) + len(FRAME_ENTRIES) * frame
+    sizes = {"pots": POTS_SIZE, "strokes": STROKE_SIZE * menu_size(speeds, frame) + entries}
+    return sizes.get(kind, BALLS_SIZE + entries + REPLACED_SIZE * replaced) + CONDITIONS_SIZE * conditions
+
+
+def space(kind: ObservationKind, size: int, choices: int) -> spaces.Space[Any]:
+    """The space of observations of so many numbers: within 1.1 where balls may lie in the mouths of pockets, else within 1."""
+    shown = arrange(kind, np.empty(size, np.float32), np.empty(choices, np.int8))
+    if not isinstance(shown, dict):
+        return spaces.Box(-REACH, REACH, shown.shape, np.float32)
+    boxes: dict[str, spaces.Space[Any]] = {}
+    for name, part in shown.items():
+        most = 1.0 if name in ("state", "conditions") else REACH
+        boxes[name] = spaces.Box(-most, most, part.shape, np.float32)
+    if kind == "masked":
+        boxes["action_mask"] = spaces.Box(0, 1, (choices,), np.int8)
+    return spaces.Dict(boxes)
+
+
 def arrange(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
-    """Observations (..., k) in a kind of ``space``: "pots" and "flat" are ``rows`` itself, "balls" has new arrays."""
+    """Observations (..., k) in a kind: "pots" and "flat" are ``rows`` itself, "balls" has new arrays."""
     if kind in ("pots", "strokes", "flat"):
         return rows
     if kind == "masked":

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from gymnasium import spaces
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
 from .._lib.types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
@@ -61,11 +60,8 @@ def table_of(table: TableLike) -> Table:
         raise refuse("table", cloth.name, allowed)
     _check_noses(cloth)
     _check_pockets(cloth)
-    past, most = (
-        deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS),
-        (observations.REACH - 1.0) * HALF_WIDTH,
-    )
-    if past > most:
+    most = (observations.REACH - 1.0) * HALF_WIDTH
+    if (past := deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS)) > most:
         allowed = f"must let no ball rest more than {most:.3g} m past the noses, where observations end (one can {past:.3g} m past them)"
         raise refuse("table", cloth.name, allowed)
     return cloth
@@ -404,17 +400,6 @@ class Options:
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = tuple(f.name for f in _FIELDS)
-
-
-def observation_space_of(
-    options: Options, actions: Actions | Choices | None = None
-) -> spaces.Box | spaces.Dict:
-    """The observation space of a game with these options, for a player with these ``actions`` if they differ."""
-    rules, frame = options.rules, options.task != "visit"
-    actions = rules.actions if actions is None else actions
-    choices = actions.choices if isinstance(actions, Choices) else 0
-    more = {"replaced": rules.miss != "off", "conditions": rules.observed, "speeds": rules.speeds}
-    return observations.space(rules.observation, frame=frame, choices=choices, **more)
 
 
 def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:

@@ -51,10 +51,6 @@ class FrameState(NamedTuple):
 
 
 _NAMES = ("state.positions", "state.on_table")
-VISIT_KEYS = ("positions", "on_table", "ball_on", "in_hand", "points", "over", "stream", "rng")
-FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
-MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
-"""Keys of the saved state of a visit, of a frame, and of a match; with drawn constants also "conditions"."""
 
 
 def check_layout(
@@ -135,7 +131,7 @@ def check_visit(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
-    conditions, table, R = check_keys(state, VISIT_KEYS, rules), rules.table, rules.physics.R
+    conditions, table, R = check_keys(state, State._fields[:-1], rules), rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     on = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
@@ -162,7 +158,8 @@ def check_frame_state(
     state: Mapping[str, Any], rules: Rules, generator: np.random.Generator, *, lot: bool
 ) -> FrameState:
     """The ``FrameState`` of a dict; ValueError names the first wrong part. ``lot``: whether a player may be asked who begins."""
-    conditions = check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
+    *keys, won, first, _ = FrameState._fields
+    conditions = check_keys(state, (*keys, won, first, "best_of") if rules.frames else tuple(keys), rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = check_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")

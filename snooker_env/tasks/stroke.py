@@ -1,7 +1,7 @@
 """How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike), then
 ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table which[j]."""
 
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,16 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, count
 from . import discrete_actions
 from .box_actions import place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_PLACEMENT, A_SPEEDS, playable
-from .kernel_arrays import C_E_T, C_END_MASS, C_MAX_OFFSET, C_MU_S, C_RAILS, CueLaw, StruckArrays
+from .kernel_arrays import (
+    C_E_T,
+    C_END_MASS,
+    C_MAX_OFFSET,
+    C_MU_S,
+    C_RAILS,
+    CueLaw,
+    PlayedArrays,
+    StruckArrays,
+)
 from .lines import new_work
 from .noise import execute_stroke, kick_of
 from .options import Rules
@@ -232,10 +241,8 @@ class ShotBuffers:
         self.n_segments: Ints = np.zeros(m, np.int64)
         self.duration: Floats = np.zeros(m)
         # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
-        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.aloft, self.here, self.shots, self.kicks)
-        ends = self.seen, self.potted, self.status, self.duration
-        events = self.event_time, self.event_what, self.n_events
-        self.played: tuple[Any, ...] = (self.r, self.aloft, self.shots, *ends, *events)
+        self.struck: tuple[Any, ...] = tuple(getattr(self, name) for name in StruckArrays._fields)
+        self.played: tuple[Any, ...] = tuple(getattr(self, name) for name in PlayedArrays._fields)
         self.enlarged: dict[int, ShotBuffers] = {}  # shots of the last run with a longer log of their own
 
     def __len__(self) -> int:
@@ -265,19 +272,3 @@ def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats, *, again: bool
     log = buffers.event_time, buffers.event_what, buffers.segments
     ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
     engine.run_batch(balls, aloft, setup, MAX_EVENTS, log, ends, 0, m)
-
-
-World: TypeAlias = tuple[Rules, Floats]
-"""The rules, and the packed constants of a table: one row."""
-
-
-def play_again(
-    buffers: ShotBuffers, j: int, log: int, balls: tuple[Floats, Bools], world: World, path: bool = False
-) -> ShotBuffers:
-    """Play shot j once more, uncounted, in its own buffers with that log; with its path if ``buffers`` or ``path`` say so."""
-    one, shot = ShotBuffers(1, log, path=path or buffers.segments.shape[1] > 0), buffers.shots[j]
-    one.shots[0], one.seen[0], one.kicks[0] = shot, buffers.seen[j], buffers.kicks[j]
-    one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = shot[[VX, VY]], shot[[WX, WY, WZ]], shot[UZ]
-    one.r[0], one.here[0] = balls
-    run(one, 1, *world, again=True)
-    return one

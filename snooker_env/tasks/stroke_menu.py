@@ -1,6 +1,5 @@
-"""Which strokes does ``action="strokes"`` choose from? A menu of complete strokes: along up to ``POTS`` direct pots or, where
-there is none, other ``lines``, at every speed and height of the tip; in frames then safeties, along lines of their own,
-and the decisions after a foul. The aim is solved for the stroke."""
+"""Which strokes does ``action="strokes"`` choose from? A menu: along up to ``POTS`` pots or, where there is none, other ``lines``,
+at every speed and height of the tip; in frames then safeties, along lines of their own, and the decisions after a foul."""
 
 import numpy as np
 from gymnasium import spaces

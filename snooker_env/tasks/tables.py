@@ -6,20 +6,22 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
+from gymnasium import spaces
 
 from .._lib.check import refuse
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Masks, Singles, Words
-from ..game.balls import COLOURS_MASK, N_BALLS, BallOn, balls_on, mask_of_present
+from ..game.balls import COLOURS_MASK, CUE, N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER
 from ..game.philox import pair, stream_of
+from ..geometry import BALL_RADIUS
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.conditions import END_MASS_RATIO, draw_constants, scale_to_unit
 from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.events import Status
 from ..physics.parameters import Physics, nominal, pack_into, physics_with
 from ..simulation import WHY, Shot, SimulationError
-from . import discrete_actions, stroke
+from . import discrete_actions, observations, stroke
 from .box_actions import Actions
 from .discrete_actions import Choices
 from .foreseen import Errors, foresee
@@ -35,23 +37,6 @@ COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
 """Entries of a step's info, floats and integers; "foul", whether ``fouls`` is not 0, is added."""
 (I_POINTS, I_BREAK, I_SECONDS) = range(3)
 (I_PENALTY, I_POTS, I_FOULS, I_BALL_ON, I_FIRST, I_EVENTS) = range(6)
-
-
-@kernel
-def copy_row(row, to):
-    """Copy one row to another."""
-    for c in range(len(row)):
-        to[c] = row[c]
-
-
-@kernel
-def keep_last(k, out, last):
-    """Save table k's rows of the output in ``last``, if it has rows, before an episode overwrites them."""
-    observations, reals, counts = last
-    if observations.shape[0]:
-        copy_row(out.observations[k], observations[k])
-        copy_row(out.reals[k], reals[k])
-        copy_row(out.counts[k], counts[k])
 
 
 @kernel
@@ -103,23 +88,24 @@ class StepOutput:
         # the data of the infos: one column for each of ``REALS`` and ``COUNTS``
         self.reals: Floats = np.zeros((n, reals))
         self.counts: Ints = np.zeros((n, counts), np.int64)
-        # the same of the episodes that ended where new ones were started; else without rows
-        m = n if last else 0
-        infos = np.zeros((m, reals)), np.zeros((m, counts), np.int64)
-        self.last: tuple[Singles, Floats, Ints] = (np.zeros((m, size), np.float32), *infos)
-        # the available choices, likewise; without rows unless the observations hold them
+        # the available choices; without rows unless the observations hold them
         self.masks: Masks = np.zeros((n if choices else 0, choices), np.int8)
-        self.last_masks: Masks = np.zeros((m if choices else 0, choices), np.int8)
+        # observations, infos and masks of the episodes that ended where new ones were started
+        kept = self.observations, self.reals, self.counts, self.masks
+        self.last: tuple[Any, ...] = tuple(map(np.zeros_like, kept)) if last else ()
 
     @property
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
         return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
 
-    def keep_masks(self, ended: Ints) -> None:
-        """Keep the masks of the tables ``ended`` as they lie, before the next episode."""
-        if len(self.last_masks):
-            self.last_masks[ended] = self.masks[ended]
+    def keep_last(self, ended: Ints) -> None:
+        """Keep the rows of the tables ``ended``, before the next episode overwrites them."""
+        for kept, row in zip(
+            self.last, (self.observations, self.reals, self.counts, self.masks), strict=True
+        ):
+            if len(row):
+                kept[ended] = row[ended]
 
 
 class Crew:
@@ -152,45 +138,48 @@ class Tables(ABC):
     REALS: tuple[str, ...] = REALS
     COUNTS: tuple[str, ...] = COUNTS
     FLAGS: tuple[str, ...] = ()  # those of ``COUNTS`` that infos give as bool
-    SIZE = 0  # numbers in an observation
     COLUMNS = 0  # of ``game``
 
-    reals: tuple[str, ...]  # ``REALS``, and the constants if they are drawn
     rules: Rules
     n: int
     limit: int
     positions: Floats  # (n, 22, 2) [m]
     on_table: Bools  # (n, 22)
-    game: Ints  # (n, COLUMNS), of ``game.frame_columns``
-    streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
-    begun: Bools  # (n,) which tables have an episode, possibly one that has ended
     actions: tuple[Actions | Choices, ...]  # of each seat, as the next
     noises: tuple[Noise, ...]
     cues: Floats  # packed: one row, or one a table if the conditions are drawn
     phys: Floats  # packed constants, likewise
-    conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
         self.positions, self.on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
-        self.game = np.zeros((n, self.COLUMNS), np.int64)
+        self.game: Ints = np.zeros((n, self.COLUMNS), np.int64)  # columns of ``game.frame_columns``
         self.game[:, BALL_ON], self.game[:, OVER] = -1, True
-        self.streams = np.zeros((n, 2), np.uint64)
-        self.begun = np.zeros(n, np.bool_)
-        self.reals = self.REALS
-        self.conditions = np.empty((0, CONDITIONS))
-        options, self.cues, errors, self.phys = rules.pack()
-        # of each seat
-        self.actions, self.noises = (rules.actions,), (rules.noise,)
-        self._errors: tuple[Errors, ...] = (Errors.of(rules.noise, rules.physics, rules.speeds),)
-        self._own: tuple[tuple[Floats, Floats], ...] = ((options, errors),)
+        self.streams: Words = np.zeros((n, 2), np.uint64)  # key and counter of each table's random stream
+        self.begun: Bools = np.zeros(n, np.bool_)  # which have an episode, possibly one that has ended
+        self.reals: tuple[str, ...] = self.REALS  # with the constants if they are drawn
+        self.conditions: Floats = np.empty(
+            (0, CONDITIONS)
+        )  # constants drawn, (n, 8); no rows: they are fixed
+        _, self.cues, _, self.phys = rules.pack()
+        self._read((rules.actions,), (rules.noise,))
         if rules.drawn:
             self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
             self.cues, self.phys = np.repeat(self.cues, n, axis=0), np.tile(rules.physics.pack(), (n, 1))
-        if rules.observed:
-            self.SIZE += CONDITIONS
+        more = {"replaced": rules.miss != "off", "conditions": rules.observed, "speeds": rules.speeds}
+        self.SIZE: int = observations.size_of(rules.observation, self.COLUMNS > FREE_BALL, **more)
+
+    def _read(self, actions: tuple[Actions | Choices, ...], noises: tuple[Noise, ...]) -> None:
+        """Take the actions and errors of the seats, also as the kernels need them."""
+        rules, real = self.rules, self.rules.cue == "real"
+        self.actions, self.noises = actions, noises
+        self._own: tuple[tuple[Floats, Floats], ...] = tuple(
+            (its.pack(), noise.pack(BALL_RADIUS, real=real))
+            for its, noise in zip(actions, noises, strict=True)
+        )
+        self._errors: tuple[Errors, ...] = tuple(Errors.of(n, rules.physics, rules.speeds) for n in noises)
 
     def pack(self, side: int = 0) -> Packed:
         """The rules for the kernels, with the actions and errors of the seat ``side``."""
@@ -213,6 +202,12 @@ class Tables(ABC):
         sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         return StepOutput(*sizes, last=last, choices=choices)
 
+    def observation_space(self, side: int = 0) -> spaces.Space[Any]:
+        """The space of what the seat ``side`` observes, float32 and int8; a Box, or a Dict of boxes."""
+        its = self.actions[side]
+        choices = its.choices if isinstance(its, Choices) else 0
+        return observations.space(self.rules.observation, self.SIZE, choices)
+
     def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
         info: dict[str, Any] = dict(zip(self.reals, out.reals[k].tolist(), strict=True))
@@ -230,15 +225,15 @@ class Tables(ABC):
 
     def record(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke just played on table k, shot j of the buffers, and the table after it."""
-        game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
-        if seen[stroke.SCORED]:
-            standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
+        game, standing, fields = self.game[k], self.standing(k), fields_of(buffers, j)
+        if fields["points"]:
+            standing["break_points"] = fields["break_before"] + fields["points"]  # also if it ended the frame
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         in_hand, over = game[[IN_HAND, OVER]].astype(bool).tolist()
         after = {"next_on": BallOn(game[BALL_ON]), "in_hand": in_hand, "over": over}
-        noise = self.noises[min(seen[stroke.PLAYER], len(self.noises) - 1)]  # alone, the agent has both turns
+        noise = self.noises[min(fields["player"], len(self.noises) - 1)]  # alone, the agent has both turns
         own = {"shot": self.shot(k, buffers, j), "cue_kind": self.rules.cue, "noise": noise}
-        return Played(**own, **balls, **after, **fields_of(buffers, j), **standing)
+        return Played(**own, **balls, **after, **fields, **standing)
 
     def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
         """Shot j of the buffers, played on table k."""
@@ -322,10 +317,6 @@ class Tables(ABC):
         physics = self.rules.physics
         return physics_with(physics, self.conditions[k]) if self.rules.drawn else physics
 
-    def world(self, k: int) -> stroke.World:
-        """What shots on table k are played with."""
-        return self.rules, self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
-
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""
         own = ("conditions", "cues", "phys") if self.rules.drawn else ()
@@ -350,13 +341,25 @@ class Tables(ABC):
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Play shot j with a longer log in its own buffers, returned; SimulationError if it does not help."""
         k, one, status = which[j], buffers, buffers.status[j]
-        balls = self.positions[k], self.on_table[k]
         while status == Status.LOG_FULL:
-            one = stroke.play_again(buffers, j, 4 * one.log, balls, self.world(k))
+            one = self.play_again(k, self.on_table[k], j, buffers, 4 * one.log)
             status = one.status[0]
         if status != Status.OK:
             raise SimulationError(f"the shot on table {k} {WHY[Status(status)]}")
         buffers.enlarged[j] = one
+        return one
+
+    def play_again(
+        self, k: int, here: Bools, j: int, b: stroke.ShotBuffers, log: int, *, path: bool = False
+    ) -> stroke.ShotBuffers:
+        """Shot j of ``b``, on table k with the balls ``here``, once more in its own buffers, uncounted; ``path``: with its path."""
+        one, shot = stroke.ShotBuffers(1, log, path=path or b.segments.shape[1] > 0), b.shots[j]
+        one.shots[0], one.seen[0], one.kicks[0] = shot, b.seen[j], b.kicks[j]
+        velocity, spin = shot[[stroke.VX, stroke.VY]], shot[[stroke.WX, stroke.WY, stroke.WZ]]
+        one.v[0, CUE], one.w[0, CUE], one.aloft[0, CUE, 1] = velocity, spin, shot[stroke.UZ]
+        one.r[0], one.here[0] = self.positions[k], here
+        phys = self.phys if len(self.phys) == 1 else self.phys[k : k + 1]
+        stroke.run(one, 1, self.rules, phys, again=True)
         return one
 
     # what each task implements
@@ -408,6 +411,9 @@ class Tables(ABC):
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on; the caller draws constants."""
 
-    @abstractmethod
     def text(self, k: int) -> str:
         """One line of text for pictures."""
+        now, on = self.standing(k), BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
+        scores, ended = " - ".join(map(str, now["scores"])), now["winner"]
+        turn = f"player {now['next_player']}, break {now['break_points']}   on: {on}"
+        return f"{scores}   {turn}" + ("" if ended is None else f"   player {ended} wins")

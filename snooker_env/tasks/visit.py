@@ -8,7 +8,7 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
-from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
+from ..game.balls import N_BALLS, balls_on_kernel, bits, next_on_kernel
 from ..game.fouls import FLAG, VISIT
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
@@ -22,8 +22,7 @@ from .options import NEVER, Rules
 from .rewards import REWARDS, reward_of
 from .states import State, check_visit
 from .stroke import JUMPED, ShotBuffers, see, write_ruling
-from .stroke_menu import menu_size
-from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
+from .tables import I_BREAK, Crew, StepOutput, Tables, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
 
@@ -67,15 +66,14 @@ def _conclude(which, positions, on_table, game, shots, rules, view, output):
 
 
 @entry(what="the start of a visit", seconds=1)
-def _begin(which, fresh, in_hand, tables, view, output, last):
-    """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
+def _begin(which, fresh, in_hand, tables, view, output):
+    """Write the results of a reset; ``fresh``: start visits, already dealt."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
     view, pots = observations.View(*view), np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         mask, state = bits(on_table[k]), game[k]
         if fresh:
-            keep_last(k, out, last)
             state[BALL_ON], state[IN_HAND] = next_on_kernel(mask), in_hand
             state[POINTS] = state[OVER] = state[STEPS] = 0
         _observe(out.observations[k], positions[k], on_table[k], state, view, pots)
@@ -98,9 +96,6 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
-        menu = observations.STROKE_SIZE * menu_size(rules.speeds, False) + len(observations.STATE_ENTRIES)
-        sizes = {"pots": observations.POTS_SIZE, "strokes": menu}
-        self.SIZE = sizes.get(rules.observation, observations.SIZE)
         super().__init__(rules, n, limit=limit)
         spread = rules.noise.spread(rules.physics, speed=observations.SHOWN_SPEED)
         pots, rails = rules.observation == "pots", rules.cue_row[C_RAILS:]
@@ -119,7 +114,7 @@ class Visits(Tables):
                 crew.saw(playing, buffers, True)
             if same_step:
                 ended = which[out.terminated[which] | out.truncated[which]]
-                out.keep_masks(ended)
+                out.keep_last(ended)
                 self._begin(ended, out)
             elif anew:
                 self._begin(which[waiting[which]], out)
@@ -145,7 +140,7 @@ class Visits(Tables):
             if fresh:
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
                 self.draw_conditions(which)
-            _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays, out.last)
+            _begin(which, fresh, plan.in_hand, self.arrays, self._view, out.arrays)
             self.show_rest(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
@@ -190,7 +185,3 @@ class Visits(Tables):
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
-
-    def text(self, k: int) -> str:
-        on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
-        return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

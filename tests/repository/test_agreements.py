@@ -42,7 +42,7 @@ def test_constants_that_rooms_share_agree():
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
     numbers = balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES)
-    assert observations.space("flat").shape == (numbers,)
+    assert observations.size_of("flat", False, replaced=False, speeds=9) == numbers
     assert balls.NAMES[16:] == balls.COLOUR_NAMES
     assert len(balls.NAMES) == balls.N_BALLS == len(balls.VALUES) == len(balls.SPOTS)
 

@@ -19,7 +19,7 @@ LEAST = 0.965
 CALLS = """
 import numpy as np
 import snooker_env as sn
-from snooker_env.tasks import Noise, observation_space
+from snooker_env.tasks import Noise
 v, w = sn.strike(2.0, 0, side=np.float32(0.1), elevation=0.1, physics={'e_c': 0.9})
 v1, w1, v2, w2 = sn.collide_balls((1, 0, 0), [0.0, 0.0, 0.0], np.zeros(3), (0, 0, 0), (1, 0, 0), fidelity='euler:200')
 shot = sn.simulate([(0.0, 0.0)], np.ones((1, 2), np.float32), [[0, 0, 0]], 'tight', sn.Physics(), on_table=[True])
@@ -50,7 +50,6 @@ env.reset(seed='one')
 sn.Position(cue='D')
 planner.play(position, [0], 'x')
 sn.planning.pots('x')
-observation_space('flats')
 """
 
 

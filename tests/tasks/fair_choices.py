@@ -25,7 +25,7 @@ KINDS = {
 def deal(n, seed, **options):
     """n new frames."""
     game = Options(task="frame", **options)
-    tables = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
+    tables = Frames(game.rules, n, seats=[Seat.of(game.rules)] * 2)
     for k in range(n):
         tables.seed(k, np.random.default_rng((seed, k)))
     tables.deal(np.arange(n), drawn=False)

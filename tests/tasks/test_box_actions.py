@@ -174,9 +174,9 @@ def test_target_aim_without_a_pot_is_at_the_middle_of_what_is_seen():
     env = SnookerEnv(aim="target")
     # the black hides half of the red: no pot there
     table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)
-    assert len(pots(env.positions, env.on_table, env.on)) == 0
+    assert len(pots(env.positions, env.on_table, env.tables.on(0))) == 0
     left = math.pi / 2 + math.asin(2 * R / 0.7)
     edge = math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3))
     for a in (0.0, -0.5):
-        aim = shot_of(env, [0, 0, 0, a], env.positions, env.on_table, env.on)[3]
+        aim = shot_of(env, [0, 0, 0, a], env.positions, env.on_table, env.tables.on(0))[3]
         assert aim == pytest.approx(0.5 * (left + edge) + a * TARGET_SPAN, abs=1e-12)

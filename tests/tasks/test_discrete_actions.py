@@ -43,8 +43,8 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env.tables.positions[0], env.tables.on_table[0] = positions, on_table
         env.tables.game[0, :3] = 1, 0, 0
         env.step(choice_of(0, speed, side, top))
-        v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
-        start = env._record.buffers.shots[0]
+        v, w = env._buffers.v[0, 0], env._buffers.w[0, 0]
+        start = env._buffers.shots[0]
         v1, w1 = [start[[VX, VY]], (0, 0)], [start[[WX, WY, WZ]], (0, 0, 0)]
         shot = sn.simulate([cue, ball], v1, w1, table=None, physics=constants)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]

@@ -39,7 +39,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     after = plain(env.get_state())
     env.set_state(after)
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
-    assert env.strokes == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
+    assert env.get_state()["strokes"] == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
     assert env.frame.striker == offender and env.frame.in_hand
     assert env.agent_selection == f"player_{offender}" and np.array_equal(before[1:], env.positions[1:])
 
@@ -47,13 +47,14 @@ def test_replacing_after_a_miss_brings_the_balls_back():
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert env.on >> BLUE & 1 and env.on >> 1 & 1
+    on = env.tables.on(0)
+    assert on >> BLUE & 1 and on >> 1 & 1
     assert env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
     other = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
-    assert not other.on >> BLUE & 1
+    assert not other.tables.on(0) >> BLUE & 1
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ def dealt(n, **options):
     """New frames at which player 0 is to play."""
     game = Options(task="frame", aim="target", placement=True, says=["decision"], **options)
     seats = [Seat.of(game.rules, opponent_of("ghost_ball", game)), Seat.of(game.rules)]
-    tables = Frames(game, n, seats=seats)
+    tables = Frames(game.rules, n, seats=seats)
     for k in range(n):
         tables.seed(k, np.random.default_rng(k))
     tables.deal(np.arange(n), drawn=False)

@@ -110,7 +110,7 @@ def test_the_winner_of_the_lot_says_who_begins(options):
             env.step(542 if other else 0)
         else:
             env.step(np.array([-1.0] + [0.0] * 6 + [-0.1 if other else 0.0]))
-        assert env.strokes == (not other) and env.frame.phase != "lot"
+        assert env.get_state()["strokes"] == (not other) and env.frame.phase != "lot"
         assert not other or env.agent_selection == "player_0"
     with pytest.raises(ValueError, match=r"state\.frame\.phase"):
         frame_state(sn.match_env(), places, level)

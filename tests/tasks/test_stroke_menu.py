@@ -236,10 +236,10 @@ def test_the_decisions_after_a_foul(choice, miss):
     assert env.action_mask(striker)[156:].tolist() == rows[156:, 0].tolist() == [1, back]
     assert rows[156:, COLUMN["speed"]].tolist() == [-1.0, 1.0]
     assert rows[156:, COLUMN["pot"]].tolist() == [-1.0, -1.0]
-    before, lies = env.strokes, env.positions[0]
+    before, lies = env.get_state()["strokes"], env.positions[0]
     env.step(choice)
     if choice == 7 or (choice == 157 and not back):
-        assert env.strokes == before + 1
+        assert env.get_state()["strokes"] == before + 1
     else:
-        assert env.agent_selection == offender and env.strokes == before
+        assert env.agent_selection == offender and env.get_state()["strokes"] == before
         assert np.array_equal(env.positions[0], (0.0, 0.0) if choice == 157 else lies)

@@ -61,9 +61,9 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
         observation = pot_view.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_view.POT_ENTRIES)
         assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
-        direction = shot(table.options.rules.actions, np.zeros(4), table.positions, table.on_table, table.on)[
-            3
-        ]
+        direction = shot(
+            table.options.rules.actions, np.zeros(4), table.positions, table.on_table, table.tables.on(0)
+        )[3]
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]
         # sine and cosine of one angle
