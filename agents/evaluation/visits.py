@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from agents._lib.physics_option import physics_option
-from snooker_env.benchmark.rollouts import PlayedStrokes, play_visits
+from snooker_env.benchmark.playing import PlayedStrokes, play_visits
 
 from .travel import unpack
 
