@@ -99,11 +99,10 @@ class Repeater:
         return actions
 
 
-Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
-
-
-def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterator[Round]:
-    """Play every table to its end."""
+def rounds(
+    tables: SnookerVectorEnv, seeds: list[int], decide: Decide
+) -> Iterator[tuple[Bools, dict[str, Any], Bools, Bools]]:
+    """Play every table to its end: which were asked for a stroke, the info after it, which are done, and by the rules."""
     tables.reset(seed=[*seeds])
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
@@ -195,7 +194,6 @@ class PlayedStrokes:
     tolerance: Floats  # (n,): of the aim of the widest direct pot after the stroke [rad]; 0 if there was none
     luck: Floats  # (n,): points, and value of the position left, less their mean over fresh errors; at first also of the deal
     decision_seconds: float  # of all decisions of the player [s]
-    simulated: int = 0  # shots that this process simulated for them
 
     def a_visit(self, values: Floats | Bools) -> Floats:
         """Sums over each visit, float64 (visits,), of values of each stroke, float (n,)."""
@@ -265,4 +263,4 @@ def play_visits(
             each(int(asked.sum() - done.sum()))
     tables.close()
     columns = [np.concatenate(column) for column in zip(*log, strict=True)]
-    return PlayedStrokes(visits, *columns, decision_seconds=decide.seconds, simulated=decide.simulated)
+    return PlayedStrokes(visits, *columns, decision_seconds=decide.seconds)

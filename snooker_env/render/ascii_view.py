@@ -8,9 +8,8 @@ from textwrap import wrap
 import numpy as np
 
 from ..geometry import COLOUR_SPOTS
-from .outline import BAULK_LINE, D_ARC, extent, has_lines
 from .palette import LETTERS
-from .scene import Scene
+from .scene import BAULK_LINE, D_ARC, Scene, extent, has_lines
 
 WIDTH = 100  # characters a line
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"

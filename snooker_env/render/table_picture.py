@@ -11,8 +11,8 @@ from .._lib.check import integer, refuse
 from .._lib.types import Bytes, Floats
 from ..geometry import COLOUR_SPOTS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, Outline, extent, has_lines, outline
 from .palette import PALETTE
+from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, extent, has_lines, outline
 
 Size: TypeAlias = tuple[int, int]
 SIZE = (1920, 1080)  # default width and height of a picture [pixels]
@@ -79,7 +79,7 @@ def table_picture(table: Table, view: View) -> Bytes:
     _bed(canvas, table)
     if has_lines(table):
         _marks(canvas)
-    _pockets(canvas, parts)
+    _pockets(canvas, table, parts)
     for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
         _cushion(canvas, polygon, nose)
     if parts.cushions:
@@ -167,9 +167,9 @@ def _marks(canvas):
         _paint(image, _INK["line"], 0.9 * canvas.cover(far))
 
 
-def _pockets(canvas, parts: Outline):
+def _pockets(canvas, table, parts):
     """The holes: cloth bends down over the slate's edge in front, leather goes down into the dark behind."""
-    for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
+    for (cx, cy, radius), throat in zip(table.falls.tolist(), parts.throats.tolist(), strict=True):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
         _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * smooth(1 - fall / 0.011))
