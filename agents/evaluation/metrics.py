@@ -34,7 +34,7 @@ def main_condition(report):
     }
 
 
-def ratios(samples, above, below):
+def draw_ratios(samples, above, below):
     """The ratio of the sums of two matrices in each of the ``Resamples``: float64 (n,), NaN where it divides by 0."""
     over = samples.sums(below)
     return np.divide(samples.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
@@ -71,7 +71,7 @@ class EntrantMetrics:
         """All figures of this agent on its own."""
         samples, c, made = self._samples, self.counted, {}
         for name, (a, b) in FIGURES.items():
-            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), ratios(samples, c[a], c[b]))
+            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), draw_ratios(samples, c[a], c[b]))
         return made | {f"{name}_a_visit_iqm": figure(iqm(c[name]), samples.iqms(c[name])) for name in SCORES}
 
     def ratios(self, other):
