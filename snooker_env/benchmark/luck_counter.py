@@ -5,7 +5,7 @@ the score, and varies less [Burch et al., AIVAT, 2018]."""
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -81,8 +81,7 @@ class WatchedOpponent:
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
             assert isinstance(copies, Frames)
-            values, places, nominated, decisions, declared = asked
-            theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
+            theirs: Any = tuple(part[rows] for part in asked)
             carry_out = lambda some, buffers: copies.carry_out(some, theirs, buffers, OPPONENT)  # noqa: E731
             copies.turn(carry_out, out, self._luck._crew)
 

@@ -38,19 +38,12 @@ class PlayedEpisodes:
     decisions: int = 0  # of the player
     seconds: float = 0.0  # time of all of them [s]
     simulated: int = 0  # shots that this process simulated for them
-    foresees: bool = False  # whether the player knows what its strokes do, see ``foresees``
+    foresees: bool = False  # whether the player knows what each of its strokes would do, by closed forms
 
     def add(self, more: "PlayedEpisodes") -> None:
         for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
             setattr(self, name, getattr(self, name) + getattr(more, name))
         self.foresees |= more.foresees
-
-
-def foresees(player: Player) -> bool:
-    """Whether closed forms tell a player what each of its strokes would do: on a menu, or by its own prediction."""
-    return isinstance(player, StrokeValuePlayer) or (
-        isinstance(player, SeenPlayer) and player.sees.get("observation") == "strokes"
-    )
 
 
 class Decider:
@@ -138,8 +131,9 @@ def play_episodes(
     decide = Decider(player, tables, seeds, run)
     rows = rows_of(task, tables, seeds, decide, run, lucky=lucky)
     strokes = decide.strokes() if decide.decisions else [np.empty((0, 0), np.float32)] * len(seeds)
-    cost = decide.decisions, decide.seconds, decide.simulated
-    return PlayedEpisodes(rows, strokes, *cost, foresees(decide.player))
+    cost, who = (decide.decisions, decide.seconds, decide.simulated), decide.player
+    menu = isinstance(who, SeenPlayer) and who.sees.get("observation") == "strokes"
+    return PlayedEpisodes(rows, strokes, *cost, foresees=menu or isinstance(who, StrokeValuePlayer))
 
 
 def rows_of(

@@ -40,22 +40,19 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     samples = Resamples(len(score), score.shape[1], RESAMPLES, zlib.crc32(label.encode()))
     count = samples.sums(np.ones(score.shape))
 
-    def of(value: float, drawn: Floats, trials: int = 0) -> dict[str, Any]:
-        """A figure; a share of 0 or 1 in this many ``trials`` has the exact one-sided bound."""
-        made = figure(value, drawn) | {"exact": False}
-        if made["low"] is None and trials and value in (0.0, 1.0):
-            most = bound_if_none(trials)
-            low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
+    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
+        """The figure of a mean; a share of 0 or 1 has the exact one-sided bound."""
+        made = figure(float(values.mean()), samples.sums(values) / count) | {"exact": False}
+        if share and made["low"] is None and made["value"] in (0.0, 1.0):
+            most = bound_if_none(score.shape[1])
+            low, high = (0.0, most) if made["value"] == 0.0 else (1.0 - most, 1.0)
             made |= {"low": low, "high": high, "exact": True}
         return made
-
-    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
-        return of(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
 
     return {
         "score": mean(score, share=not counted),
         "adjusted": mean(adjust(score, columns["luck"] / PARTS), share=not counted),
-        "iqm": of(iqm(score), samples.iqms(score)) if counted else None,
+        "iqm": figure(iqm(score), samples.iqms(score)) | {"exact": False} if counted else None,
         "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in task.thresholds],
         "by_run": score.mean(axis=1).tolist(),
         "best": int(score.max()),
