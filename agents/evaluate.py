@@ -39,7 +39,6 @@ with needs("agents.evaluate"):
     from agents._lib.provenance import provenance
     from agents._lib.tables import show
     from snooker_env.benchmark import HELD_OUT_SEED, play_visits
-    from snooker_env.benchmark.rollouts import counts
     from snooker_env.benchmark.statistics import RESAMPLES
     from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import integer, parse_fidelity, refuse
@@ -62,6 +61,7 @@ with needs("agents.evaluate"):
     from .evaluation.entrants import Entrant, entrants_of
     from .evaluation.metrics import AXES, EntrantMetrics
     from .evaluation.travel import pack
+    from .evaluation.visit_figures import counts
     from .evaluation.visits import join_parts, parts_of, play
     from .report import markdown, parts, verdict
 

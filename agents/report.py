@@ -16,13 +16,12 @@ from agents._lib.lifecycle import command, needs, parser_of
 with needs("agents.report"):
     from agents._lib.files import read_json, write_atomic
     from agents._lib.tables import WIDTH, TextTable, format_figure, page, show
-    from snooker_env.benchmark.rollouts import CENTURY, FIGURES, MAXIMUM
-    from snooker_env.benchmark.tasks import most_points
     from snooker_env.checks import refuse
 
     from .evaluation import curve_report, tournament_report
     from .evaluation.curve_file import is_curves
     from .evaluation.metrics import AXES, USUAL, add_bound, main_condition
+    from .evaluation.visit_figures import CENTURY, FIGURES, MAXIMUM, most_points
 
 SEEDS = 5
 """The report points out fewer training seeds than this."""
@@ -32,7 +31,7 @@ _pm = partial(format_figure, form="{:.2f}")
 
 
 def _trials(row, below):
-    """How many times a run could have done it: the entry ``below`` of ``benchmark.counts``; None if not kept."""
+    """How many times a run could have done it: the entry ``below`` of ``visit_figures.counts``; None if not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:

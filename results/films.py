@@ -17,6 +17,7 @@ from snooker_env.players import FRAMES, VISITS
 from snooker_env.replays import replay
 
 SIZE, FPS, SPEED = (720, 406), 20.0, 2.0
+ENCODER = "-c:v libx264 -preset slow -crf 30 -pix_fmt yuv420p -movflags +faststart -threads 1"
 MOST_STROKES = 8
 """Strokes of an episode that a film shows, so that the files stay small."""
 SEED, TRIES = 1_000_000, 40
@@ -68,12 +69,7 @@ FILMS = {
     "break": _visit("stroke_value", "held_out", 20),
     "break_club": _visit("planner", "held_out", 8, noise="club"),
     "escape": _visit("planner", "snookered", 0, reward="legal", one_stroke=True),
-    "frame": Film(
-        "tactician",
-        FRAME,
-        title="a frame: tactician against tactician",
-        quiet=0.5,
-    ),
+    "frame": Film("tactician", FRAME, title="a frame: tactician against tactician", quiet=0.5),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),
     "pot_easy": _visit("ghost_ball", "pots:easy", 1),
@@ -114,21 +110,7 @@ def write(
     from imageio_ffmpeg import get_ffmpeg_exe
 
     given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-    wanted = [
-        "-c:v",
-        "libx264",
-        "-preset",
-        "slow",
-        "-crf",
-        "30",
-        "-pix_fmt",
-        "yuv420p",
-        "-movflags",
-        "+faststart",
-        "-threads",
-        "1",
-    ]
-    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
+    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *ENCODER.split(), str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None
         for picture in made.frames(fps=fps, speed=speed, size=size):

@@ -13,13 +13,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
-QUIET = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-]
+QUIET = "--no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-component-update"
 DESK, PHONE = {"width": 1280, "height": 880}, {"width": 390, "height": 844}
 
 
@@ -83,6 +77,6 @@ def replay(browser, out):
 def make(folder):
     """Take them all."""
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=QUIET)
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=QUIET.split())
         play(chromium, folder)
         replay(chromium, folder)

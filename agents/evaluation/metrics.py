@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.benchmark.rollouts import FIGURES
 from snooker_env.benchmark.statistics import Resamples, bound_if_none, figure, iqm
 
 from .entrants import Entrant
+from .visit_figures import FIGURES
 
 BELOW = sorted({below for _, below in FIGURES.values()})
 """Denominators of shares and means, whose counts per run are kept as well."""
@@ -32,6 +32,12 @@ def main_condition(report):
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
         for name, key in (("layout", "layouts"), *zip(AXES, AXES, strict=True))
     }
+
+
+def draw_ratios(samples, above, below):
+    """The ratio of the sums of two matrices in each of the ``Resamples``: float64 (n,), NaN where it divides by 0."""
+    over = samples.sums(below)
+    return np.divide(samples.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
 
 
 def _quotient(above, below):
@@ -65,7 +71,7 @@ class EntrantMetrics:
         """All figures of this agent on its own."""
         samples, c, made = self._samples, self.counted, {}
         for name, (a, b) in FIGURES.items():
-            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
+            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), draw_ratios(samples, c[a], c[b]))
         return made | {f"{name}_a_visit_iqm": figure(iqm(c[name]), samples.iqms(c[name])) for name in SCORES}
 
     def ratios(self, other):

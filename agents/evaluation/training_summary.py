@@ -6,12 +6,13 @@ import numpy as np
 
 from agents._lib.tables import text_table
 from snooker_env import player
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import play_visits
 from snooker_env.benchmark.tasks import tables_of
 from snooker_env.players.search_player import BUDGET, SearchPlayer
 
 from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.trained import player_of_model
+from .visit_figures import summary
 
 
 def evaluate(recipe, model, visits, loop):

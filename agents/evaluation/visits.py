@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from agents._lib.physics_option import physics_option
-from snooker_env.benchmark.rollouts import PlayedStrokes, play_visits
+from snooker_env.benchmark.playing import PlayedStrokes, play_visits
 
 from .travel import unpack
 
@@ -31,8 +31,7 @@ def play(shared, args, threads):
     options |= {"first_seed": seeds, "seed": k, "threads": threads}
     strokes = play_visits(unpack(shared), len(seeds), **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}
-    more = {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
-    return columns | more
+    return columns | {"seconds": np.float64(strokes.decision_seconds)}
 
 
 def join_parts(results, total):
@@ -40,7 +39,5 @@ def join_parts(results, total):
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))
-    seconds, simulated = (sum(one[name].item() for one in results) for name in ("seconds", "simulated"))
-    return PlayedStrokes(
-        total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated
-    )
+    seconds = sum(one["seconds"].item() for one in results)
+    return PlayedStrokes(total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds)

@@ -81,10 +81,10 @@ def in_play(level, visits, seed, **options):
     and the chance it was given."""
     player = Likeliest()
     strokes = play_visits(player, visits, noise=level, seed=seed, **options)
-    return strokes.has_scored, np.concatenate(player.chances)
+    return strokes.points > 0, np.concatenate(player.chances)
 
 
 def first_pots(level, layout, visits, **options):
     """Whether the first stroke of each of so many visits scored: at the widest pot, aim solved, 2.3 m/s."""
     strokes = play_visits(WidestPot(), visits, noise=level, layout=layout, **options)
-    return strokes.has_scored[strokes.number == 0]
+    return strokes.points[strokes.number == 0] > 0

@@ -40,10 +40,11 @@ def _spin_panel(ax, shots):
         )
     )
     marks = dict(zip(SIDES, "<o>", strict=True))
-    parts = outline(sn.Table.preset("match"))
+    table = sn.Table.preset("match")
+    parts = outline(table)
     for nose in parts.noses:
         ax.plot(*np.asarray(nose).T, color=picture_style.INK, lw=2)
-    for x, y, radius in parts.falls:
+    for x, y, radius in table.falls:
         ax.add_patch(Circle((x, y), radius, color=picture_style.INK))
     for shot in shots:
         path, colour = np.array(shot["path"]), colours[shot["top"]]

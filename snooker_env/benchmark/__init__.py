@@ -4,8 +4,7 @@ from ..players.program import AgentError
 from ..simulation import count_shots
 from .agents import Agent
 from .checking import faults
-from .playing import COLUMNS
-from .rollouts import play_visits
+from .playing import COLUMNS, play_visits
 from .run import judge
 from .tasks import HELD_OUT_SEED, TASKS, Task
 

@@ -187,18 +187,11 @@ def _degenerate(args: argparse.Namespace) -> int:
     return int(bool(wrong))
 
 
-def _sound(files: Sequence[str]) -> list[dict[str, Any]]:
-    """The results in these files, each checked."""
-    results = []
-    for file in files:
-        results.append(read_result(file))
-        if wrong := faults(results[-1]):
-            raise ValueError(f"{file}: {wrong[0]} ({len(wrong)} faults: see check)")
-    return results
-
-
 def _table(args: argparse.Namespace) -> int:
-    results = _sound(args.files)
+    results = [read_result(file) for file in args.files]
+    for file, result in zip(args.files, results, strict=True):
+        if wrong := faults(result):
+            raise ValueError(f"{file}: {wrong[0]} ({len(wrong)} faults: see check)")
     if args.markdown:
         text = Path(args.markdown).read_text(encoding="utf-8")
         write_atomic(args.markdown, page(text, results))

@@ -176,10 +176,7 @@ def _differences(value: object, want: object, name: str = "") -> list[str]:
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Have known players play again; compare strokes, class, shots and training.
-
-    They play whole episodes, decisions after fouls included, in an order that nobody can predict: all episodes, or as many
-    as ``WORK`` allows."""
+    """Have known players play whole episodes again, in an order that nobody can predict, as many as ``WORK`` allows."""
     agent, rows, rng, wrong = result["agent"], result["rows"], np.random.default_rng(), list[str]()
     known = [(run, source) for run, source in enumerate(agent["sources"]) if is_player_name(source)]
     asked = {run: rng.permutation([k for k, row in enumerate(rows) if row[0] == run]) for run, _ in known}
@@ -203,10 +200,9 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     which = f"{source} plays another stroke than number {n} of the file"
                     wrong.append(f"strokes: run {run}, table {rows[k][1]}: {which}")
             if agent["class"] in ("model_free", "foresight") and played.simulated:
-                shots = (
-                    f"{shorten(source)} simulated {played.simulated:,} shots for {played.decisions:,} strokes"
-                )
-                wrong.append(f"agent.class = {agent['class']!r}: must be 'planning': {shots}")
+                shots = f"simulated {played.simulated:,} shots for {played.decisions:,} strokes"
+                must = f"must be 'planning': {shorten(source)} {shots}"
+                wrong.append(f"agent.class = {agent['class']!r}: {must}")
             if agent["foresees"] != played.foresees:
                 must = f"must be {played.foresees}, as of {shorten(source)}"
                 wrong.append(f"agent.foresees = {agent['foresees']}: {must}")

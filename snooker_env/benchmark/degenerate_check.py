@@ -10,7 +10,7 @@ import numpy as np
 from ..players.degenerate import MODULE, SILLY, Constant
 from ..tasks.discrete_actions import SIZE, STROKES
 from .agents import Agent
-from .playing import BATCH, COLUMNS, play_episodes
+from .playing import COLUMNS, play_episodes
 from .results import read_result
 from .run import judge
 from .tasks import TASKS, Task
@@ -29,16 +29,10 @@ def best_constant(task: Task, threads: int | None = None) -> int:
     lines = 1 if task.frame else SIZE // STROKES
     left, first, episodes = list(range(lines * STROKES)), 0, FIRST_ROUND
     while True:
-        batches = [
-            list(range(k, min(k + BATCH, first + episodes))) for k in range(first, first + episodes, BATCH)
-        ]
-        scores = []
+        seeds, scores = list(range(first, first + episodes)), []
         for choice in left:
-            played = (
-                play_episodes(training, Constant(choice), seeds, 0, threads, lucky=False) for seeds in batches
-            )
-            rows = [one.rows for one in played]
-            scores.append(np.mean([row[_SCORE] for some in rows for row in some]))
+            played = play_episodes(training, Constant(choice), seeds, 0, threads, lucky=False)
+            scores.append(np.mean([row[_SCORE] for row in played.rows]))
         order = np.argsort(-np.array(scores), kind="stable")
         if len(left) == FINALISTS:
             return left[order[0]]

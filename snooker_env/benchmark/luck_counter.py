@@ -5,7 +5,7 @@ the score, and varies less [Burch et al., AIVAT, 2018]."""
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -22,12 +22,9 @@ Decide: TypeAlias = Callable[[Bools, int], Singles]
 
 
 class Luck:
-    """The luck of the episodes on n tables from the agent's point of view; in frames, of both sides' strokes. The luck of a
-    visit includes the table dealt if the mean over all deals is known.
-
-    ``envs``: the tables, before their first reset; from then on an opponent's strokes count, too. ``score``: what an episode
-    scores, as in ``Task``. ``sums``, float64 (n,), is the luck so far in units of the score: set it to 0 where an episode
-    begins. ``counts``, bool (n,): tables whose luck is counted, at first all."""
+    """The luck on the n tables ``envs``, not yet reset, from the agent's point of view: in frames of both sides' strokes, in
+    visits also of the table dealt if the mean over all deals is known. ``sums``, float64 (n,): so far, in units of ``score``;
+    set it to 0 where an episode begins. ``counts``, bool (n,): tables whose luck is counted, at first all."""
 
     def __init__(self, envs: SnookerVectorEnv, score: str):
         self.sums: Floats = np.zeros(envs.num_envs)
@@ -84,8 +81,7 @@ class WatchedOpponent:
 
         def turn(copies: Tables, rows: Ints, out: StepOutput) -> None:
             assert isinstance(copies, Frames)
-            values, places, nominated, decisions, declared = asked
-            theirs = values[rows], places[rows], nominated[rows], decisions[rows], declared[rows]
+            theirs: Any = tuple(part[rows] for part in asked)
             carry_out = lambda some, buffers: copies.carry_out(some, theirs, buffers, OPPONENT)  # noqa: E731
             copies.turn(carry_out, out, self._luck._crew)
 

@@ -1,23 +1,24 @@
-"""How are episodes played? Side by side. Actions are rounded to float32 before they are played and kept; seeds
-of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
+"""How are episodes and visits played? Side by side. Actions are rounded to float32 before they are played and kept;
+seeds of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._lib.types import Bools, Floats, Ints
+from .._lib.types import Bools, Floats, Ints, Singles
 from ..envs.vector import SnookerVectorEnv
+from ..planning import Positions, pots
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
 from ..players.seen import SeenPlayer
 from ..players.stroke_value_player import StrokeValuePlayer
 from ..simulation import count_shots
 from .luck_counter import Decide, Luck
-from .tasks import Task
+from .tasks import HELD_OUT_SEED, Task
 
 BATCH = 100  # episodes that are played side by side
 SUMS = ("strokes", "points", "pots", "fouls")
@@ -37,19 +38,12 @@ class PlayedEpisodes:
     decisions: int = 0  # of the player
     seconds: float = 0.0  # time of all of them [s]
     simulated: int = 0  # shots that this process simulated for them
-    foresees: bool = False  # whether the player knows what its strokes do, see ``foresees``
+    foresees: bool = False  # whether the player knows what each of its strokes would do, by closed forms
 
     def add(self, more: "PlayedEpisodes") -> None:
         for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
             setattr(self, name, getattr(self, name) + getattr(more, name))
         self.foresees |= more.foresees
-
-
-def foresees(player: Player) -> bool:
-    """Whether closed forms tell a player what each of its strokes would do: on a menu, or by its own prediction."""
-    return isinstance(player, StrokeValuePlayer) or (
-        isinstance(player, SeenPlayer) and player.sees.get("observation") == "strokes"
-    )
 
 
 class Decider:
@@ -98,11 +92,10 @@ class Repeater:
         return actions
 
 
-Round = tuple[Bools, dict[str, Any], Bools, Bools]  # asked for a stroke; the info after it; done; terminated
-
-
-def rounds(tables: SnookerVectorEnv, seeds: list[int], decide: Decide) -> Iterator[Round]:
-    """Play every table to its end."""
+def rounds(
+    tables: SnookerVectorEnv, seeds: list[int], decide: Decide
+) -> Iterator[tuple[Bools, dict[str, Any], Bools, Bools]]:
+    """Play every table to its end: which were asked for a stroke, the info after it, which are done, and by the rules."""
     tables.reset(seed=[*seeds])
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
@@ -138,8 +131,9 @@ def play_episodes(
     decide = Decider(player, tables, seeds, run)
     rows = rows_of(task, tables, seeds, decide, run, lucky=lucky)
     strokes = decide.strokes() if decide.decisions else [np.empty((0, 0), np.float32)] * len(seeds)
-    cost = decide.decisions, decide.seconds, decide.simulated
-    return PlayedEpisodes(rows, strokes, *cost, foresees(decide.player))
+    cost, who = (decide.decisions, decide.seconds, decide.simulated), decide.player
+    menu = isinstance(who, SeenPlayer) and who.sees.get("observation") == "strokes"
+    return PlayedEpisodes(rows, strokes, *cost, foresees=menu or isinstance(who, StrokeValuePlayer))
 
 
 def rows_of(
@@ -177,3 +171,90 @@ def rows_of(
     parts = np.zeros(n) if luck is None else np.round(PARTS * luck.sums)
     columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended, parts)
     return np.array(columns).T.astype(int).tolist()
+
+
+@dataclass
+class PlayedStrokes:
+    """All n strokes of a number of visits, in the order of play."""
+
+    visits: int
+    visit: Ints  # (n,): index of the visit of each stroke
+    number: Ints  # (n,): its number in the visit, from 0
+    points: Floats  # (n,): scored; 0 for a miss or a foul
+    foul: Bools  # (n,)
+    ball_on: Ints  # (n,): a ``BallOn``
+    cleared: Bools  # (n,): whether no object ball was left
+    cue: Floats  # (n, 2): position of the cue ball after the stroke [m]; NaN if it was potted
+    tolerance: Floats  # (n,): of the aim of the widest direct pot after the stroke [rad]; 0 if there was none
+    luck: Floats  # (n,): points, and value of the position left, less their mean over fresh errors; at first also of the deal
+    decision_seconds: float  # of all decisions of the player [s]
+
+    def a_visit(self, values: Floats | Bools) -> Floats:
+        """Sums over each visit, float64 (visits,), of values of each stroke, float (n,)."""
+        return np.asarray(np.bincount(self.visit, values, self.visits), np.float64)
+
+
+def play_visits(
+    player: Player | str,
+    visits: int,
+    *,
+    first_seed: int | Sequence[int] = HELD_OUT_SEED,
+    seed: int = 0,
+    threads: int | None = None,
+    each: Callable[[int], None] | None = None,
+    **options: object,
+) -> PlayedStrokes:
+    """Play visits side by side and record every stroke.
+
+    Parameters
+    ----------
+    player, visits : Player or str, int
+        The player or its name; the number of visits.
+    first_seed : int or sequence of int
+        Seed of the first table (the others use the seeds that follow), or the seed of each table.
+    seed : int
+        Seed of the player's random numbers, which do not depend on the other tables.
+    threads : int, optional
+        As in ``SnookerVectorEnv``.
+    each : callable, optional
+        Called after each round of strokes with the number of visits that still go on.
+    **options
+        Options of the environment; defaults: the layout "held_out" and "professional" noise. The player's strokes are
+        played exactly, whatever the options say about actions.
+
+    Returns
+    -------
+    PlayedStrokes
+        Arrays (n,) of all n strokes in the order of play, among them ``visit``, ``points``, ``foul``, ``cleared`` and
+        ``luck`` [points]; ``a_visit(values)`` sums their values over visits, float64 (visits,).
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import play_visits
+    >>> play_visits("ghost_ball", 3, layout="colours").visit.tolist()[:3]
+    [0, 1, 2]
+    """
+    seeds = list(range(first_seed, first_seed + visits)) if isinstance(first_seed, int) else list(first_seed)
+    every: dict[str, Any] = {"layout": "held_out", "noise": "professional", **options}
+    every |= {"action": "box", "observation": "flat", **VISITS}
+    tables = SnookerVectorEnv(visits, threads=threads, **every)
+    decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
+    luck, before = Luck(tables, "points"), np.zeros(visits)
+
+    def note_ball_on(asked: Bools, number: int) -> Singles:
+        nonlocal ball_on
+        ball_on = Positions.of(tables).ball_on[asked]
+        return decide(asked, number)
+
+    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, luck.watch(note_ball_on))):
+        here = np.flatnonzero(asked)
+        left = Positions.of(tables)[here]
+        cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
+        outcome = info["points"][here], info["foul"][here], ball_on, ~left.on_table[:, 1:].any(1), cue
+        widest, gained, before = pots(left, most=1).tolerance[:, 0], luck.sums - before, luck.sums.copy()
+        log.append((here, np.full(len(here), number), *outcome, widest, gained[here]))
+        if each is not None:
+            each(int(asked.sum() - done.sum()))
+    tables.close()
+    columns = [np.concatenate(column) for column in zip(*log, strict=True)]
+    return PlayedStrokes(visits, *columns, decision_seconds=decide.seconds)

@@ -34,14 +34,6 @@ def commit() -> str | None:
         return None
 
 
-def processor() -> str:
-    """The name of the processor, as the operating system reports it, or "unknown"."""
-    cpuinfo = Path("/proc/cpuinfo")
-    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
-    names = [text.split(":", 1)[1].strip() for text in lines if text.startswith("model name")]
-    return names[0] if names else platform.processor() or "unknown"
-
-
 def software() -> dict[str, str | None]:
     """Name -> version of the package, of Python and of libraries that decide results; None: not installed."""
     from .. import __version__
@@ -70,7 +62,11 @@ def arithmetic() -> str:
 
 
 def machine() -> dict[str, Any]:
-    """Platform, processor, cores, load of the last minute or None: "platform", "cpu", "cores", "load"."""
+    """Platform, processor's name or "unknown", cores, load of the last minute or None: "platform", "cpu", "cores", "load"."""
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
+    names = [text.split(":", 1)[1].strip() for text in lines if text.startswith("model name")]
+    cpu = names[0] if names else platform.processor() or "unknown"
     load = round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None
     where = f"{platform.system()} {platform.machine()}"
-    return {"platform": where, "cpu": processor(), "cores": os.cpu_count() or 1, "load": load}
+    return {"platform": where, "cpu": cpu, "cores": os.cpu_count() or 1, "load": load}

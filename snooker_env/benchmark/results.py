@@ -25,53 +25,35 @@ from .schema import DATE, NAME, PROTOCOL, VERSION, line
 from .statistics import RESAMPLES, Resamples, adjust, bound_if_none, figure, iqm
 from .tasks import TASKS, Task
 
-BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # training budgets [simulated shots]
+BUDGETS = {"none": 0, "50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}  # of training [simulated shots]
 SLACK = 1.02  # by how much a budget may be exceeded: training runs in whole rollouts
 
 
-def budget_of(shots: int | None) -> str:
-    """The budget class of an agent, by the simulated shots of its training; None: unknown."""
-    if not shots:
-        return "unknown" if shots is None else "none"
-    return next((name for name, most in BUDGETS.items() if shots <= SLACK * most), "open")
-
-
-def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
-    """The columns, (runs, episodes); None unless every run has played the same tables in order."""
+def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
+    """Compute all figures of an agent's rows (docs/benchmark_files.md); None unless all runs have played the same tables."""
     table = np.array(rows, np.float64).reshape(-1, len(COLUMNS))
     runs = [table[table[:, 0] == run] for run in np.unique(table[:, 0])]
     if not runs or any(not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
         return None
-    return dict(zip(COLUMNS, np.moveaxis(np.stack(runs), 2, 0), strict=True))
-
-
-def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
-    """Compute all figures of an agent's rows (docs/benchmark_files.md); None if the runs are not complete."""
-    columns = matrix(rows)
-    if columns is None:
-        return None
+    columns = dict(zip(COLUMNS, np.moveaxis(np.stack(runs), 2, 0), strict=True))  # each (runs, episodes)
     score, counted = columns["score"], task.counts
     samples = Resamples(len(score), score.shape[1], RESAMPLES, zlib.crc32(label.encode()))
     count = samples.sums(np.ones(score.shape))
 
-    def of(value: float, drawn: Floats, trials: int = 0) -> dict[str, Any]:
-        """A figure; a share of 0 or 1 in this many ``trials`` has the exact one-sided bound."""
-        made = figure(value, drawn) | {"exact": False}
-        if made["low"] is None and trials and value in (0.0, 1.0):
-            most = bound_if_none(trials)
-            low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
+    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
+        """The figure of a mean; a share of 0 or 1 has the exact one-sided bound."""
+        made = figure(float(values.mean()), samples.sums(values) / count) | {"exact": False}
+        if share and made["low"] is None and made["value"] in (0.0, 1.0):
+            most = bound_if_none(score.shape[1])
+            low, high = (0.0, most) if made["value"] == 0.0 else (1.0 - most, 1.0)
             made |= {"low": low, "high": high, "exact": True}
         return made
 
-    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
-        return of(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
-
-    profile = [t for t in task.thresholds if t <= task.most]
     return {
         "score": mean(score, share=not counted),
         "adjusted": mean(adjust(score, columns["luck"] / PARTS), share=not counted),
-        "iqm": of(iqm(score), samples.iqms(score)) if counted else None,
-        "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in profile],
+        "iqm": figure(iqm(score), samples.iqms(score)) | {"exact": False} if counted else None,
+        "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in task.thresholds],
         "by_run": score.mean(axis=1).tolist(),
         "best": int(score.max()),
         **{name: mean(columns[name]) for name in ("points", "pots", "strokes")},
@@ -103,8 +85,10 @@ def complete(record: dict[str, Any], task: Task) -> dict[str, Any]:
     name = "foresight" if agent["foresees"] else "model_free"
     name = "undeclared" if mean is None else "planning" if mean > 0 else name
     name = "degenerate" if all(map(is_degenerate, agent["sources"])) else name
-    made = {"class": name, "simulated_shots": mean, "declared": by_word}
-    made["budget"] = budget_of(agent["training_shots"])
+    trained = agent["training_shots"]
+    fit = [budget for budget, most in BUDGETS.items() if trained is not None and trained <= SLACK * most]
+    budget = "unknown" if trained is None else [*fit, "open"][0]
+    made = {"class": name, "simulated_shots": mean, "declared": by_word, "budget": budget}
     record = record | {
         "schema": {"name": NAME, "version": VERSION},
         "protocol": record["protocol"] | {"version": PROTOCOL},
@@ -164,8 +148,11 @@ def pack_strokes(strokes: Kept) -> dict[str, str]:
     return {"sha256": hashlib.sha256(raw).hexdigest(), "data": data}
 
 
-def unpack_strokes(field: dict[str, str], lengths: list[int], size: int) -> Kept:
-    """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
+def strokes_of(result: dict[str, Any]) -> Kept:
+    """The actions (n, size) of each row of a result whose rows have their form; ValueError if they are damaged or no actions."""
+    field, lengths = result["strokes"], [row[STROKES] for row in result["rows"]]
+    task = TASKS[result["task"]]
+    size = task.judged_options(**(FRAMES if task.frame else VISITS)).rules.actions.size
     n, width, much = sum(lengths), 4 * size, f"{len(field['data']):,} characters"
     try:
         packing = zlib.decompressobj()
@@ -183,10 +170,3 @@ def unpack_strokes(field: dict[str, str], lengths: list[int], size: int) -> Kept
     for k, c in np.argwhere(~(np.abs(actions) <= 1.0))[:1].tolist():  # not for NaN either
         raise refuse(f"strokes.data[{k}, {c}]", float(actions[k, c]), "must be finite and within [-1, 1]")
     return np.split(actions, np.cumsum(lengths)[:-1]) if lengths else []
-
-
-def strokes_of(result: dict[str, Any]) -> Kept:
-    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
-    task = TASKS[result["task"]]
-    actions = task.judged_options(**(FRAMES if task.frame else VISITS)).rules.actions
-    return unpack_strokes(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)

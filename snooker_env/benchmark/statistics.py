@@ -55,24 +55,12 @@ class Resamples:
         means = np.stack([self._visits @ one for one in scores], axis=1)
         return (means * self._runs).sum(axis=1)
 
-    def ratios(self, above: Floats, below: Floats) -> Floats:
-        """The ratio of the sums of two matrices in each sample: float64 (n,), NaN where it divides by 0."""
-        over = self.sums(below)
-        return np.divide(self.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
-
     def iqms(self, scores: Floats) -> Floats:
         """The inter-quartile mean of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         values, which = np.unique(scores, return_inverse=True)
         which, eye = which.reshape(scores.shape), np.eye(len(values))
         each = (self._runs[:, r, None] * (self._visits @ eye[one]) for r, one in enumerate(which))
         return _middle_mean(values, sum(each))
-
-
-def interval(samples: Floats | Sequence[float]) -> tuple[float, float]:
-    """The 95 % percentile interval of bootstrap samples. NaN if a sample is NaN or all are equal: no century in 500 visits does
-    not prove that there are none."""
-    low, high = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
-    return (float(low), float(high)) if np.ptp(samples) > 0 else (float("nan"), float("nan"))
 
 
 def bound_if_none(n: float) -> float:
@@ -82,8 +70,10 @@ def bound_if_none(n: float) -> float:
 
 
 def figure(value: float, samples: Floats | Sequence[float]) -> dict[str, float | None]:
-    """A figure with its 95 % bootstrap interval: "value", "low" and "high"; None where a number is not finite."""
-    numbers = zip(("value", "low", "high"), (value, *interval(samples)), strict=True)
+    """A figure with its 95 % percentile interval: "value", "low" and "high", None where a number is not finite. An interval
+    is None if a sample is NaN or all are equal: no century in 500 visits does not prove that there are none."""
+    tails = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2]) if np.ptp(samples) > 0 else [np.nan] * 2
+    numbers = zip(("value", "low", "high"), (value, *tails), strict=True)
     return {name: float(x) if np.isfinite(x) else None for name, x in numbers}
 
 

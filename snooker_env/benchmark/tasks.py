@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from .._lib.check import choice, integer, refuse, refuse_what
-from ..game.balls import N_REDS, VALUES
 from ..game.layouts import HELD_OUT, plan_of
 from ..game.layouts import layout as deal
 from ..tasks.options import Options
@@ -43,8 +42,8 @@ class Task:
     --------
     >>> from snooker_env.benchmark import TASKS
     >>> task = TASKS["SnookerBreak-v0"]
-    >>> task.score, task.episodes, task.most
-    ('points', 500, 147)
+    >>> task.score, task.episodes, task.judged_layout
+    ('points', 500, 'held_out')
     """
 
     id: str
@@ -95,13 +94,6 @@ class Task:
         integer("episodes", n, 1, 2**20)
         first, alike = HELD_OUT_SEED, plan_of(self.judged_layout).in_hand
         return list(range(first, first + n) if alike else tables_of(self.judged_layout, n))
-
-    @property
-    def most(self) -> int:
-        """The highest score that an episode can have."""
-        if self.score == "lead":
-            return N_REDS  # of one stroke that pots all reds
-        return most_points(self.judged_layout) if self.counts else 1
 
 
 _FORM = {"action": "box", "aim": "pot"}
@@ -158,10 +150,3 @@ def tables_of(layout: str, n: int) -> tuple[int, ...]:
             if len(seeds) == n:
                 return tuple(seeds)
     raise refuse("visits", n, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
-
-
-def most_points(layout: str) -> int:
-    """The most points of a visit on a layout."""
-    _, on_table = deal(plan_of(layout), np.random.default_rng(0))
-    reds, colours = int(on_table[1:16].sum()), int(VALUES[16:] @ on_table[16:])
-    return colours + reds * (8 if colours else 1)

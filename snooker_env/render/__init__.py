@@ -1,5 +1,5 @@
 """Pictures of a table. Public (``__all__``): the scene of a table, for drawing with another library."""
 
-from .outline import scene_data
+from .scene import scene_data
 
 __all__ = ["scene_data"]

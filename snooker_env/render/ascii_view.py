@@ -8,9 +8,8 @@ from textwrap import wrap
 import numpy as np
 
 from ..geometry import COLOUR_SPOTS
-from .outline import BAULK_LINE, D_ARC, extent, has_lines
 from .palette import LETTERS
-from .scene import Scene
+from .scene import BAULK_LINE, D_ARC, Scene, extent, has_lines
 
 WIDTH = 100  # characters a line
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
@@ -18,34 +17,35 @@ _LINE, _ARC, _SPOT, _PATH, _POCKET = "│", "·", "+", ".", "O"
 
 
 class _Grid:
-    """Characters on a table, ``columns`` by ``rows`` cells, each about twice as high as wide."""
+    """Characters on a table of n columns, whose cells are about twice as high as wide, and a rail of one cell around them."""
 
     def __init__(self, columns, table):
-        (self.left, self.right), (self.low, self.high) = extent(table).tolist()
-        self.columns = columns
-        rows = round(columns * (self.right - self.left) / (self.high - self.low) / 2)
-        # odd, so that blue, brown, pink and black have a row of their own
-        self.rows = min(max(9, rows), 400) | 1
-        self.cells = np.full((self.rows, columns), " ")
+        self.low, self.high = extent(table).T
+        width, length = self.high - self.low
+        # rows are odd, so that blue, brown, pink and black have one of their own
+        self.shape = np.array([min(max(9, round(columns * width / length / 2)), 400) | 1, columns])
+        self.cells, self.step = np.full(self.shape + 2, " "), length / columns / 2
+        if len(table.noses):
+            self.cells[[0, -1]], self.cells[:, [0, -1]] = "═", "║"
+            self.cells[[0, 0, -1, -1], [0, -1, 0, -1]] = list("╔╗╚╝")
+        for x, y, _ in table.falls:
+            row, column = (-int(far > 0.5) for far in ((x, y) - self.low) / (width, length))
+            for end in (y - 1e-3, y + 1e-3):  # two cells where the middle falls between them
+                inside = self.low[1] < end < self.high[1]
+                self.cells[row, self.cell((x, end))[1] if inside else column] = _POCKET
 
     def cell(self, point):
-        """Row and column of a point [m], or None if it lies outside the noses."""
-        x, y = point
-        if not (self.left <= x <= self.right and self.low <= y <= self.high):
-            return None
-        row, column = (x - self.left) / (self.right - self.left), (y - self.low) / (self.high - self.low)
-        return min(int(row * self.rows), self.rows - 1), min(int(column * self.columns), self.columns - 1)
-
-    def mark(self, point, character):
-        if (at := self.cell(point)) is not None:
-            self.cells[at] = character
+        """Row and column of a point [m]: those of a rail beyond the noses."""
+        part = (point - self.low) / (self.high - self.low)
+        return tuple((np.floor(part * self.shape) - (part == 1.0)).astype(int).clip(-1, self.shape) + 1)
 
     def line(self, points, character):
-        """A polyline, drawn by points closer than the cells."""
-        step = (self.high - self.low) / self.columns / 2
+        """A polyline, drawn by points closer than the cells, without what is beyond the noses."""
         for a, b in pairwise(points):
-            for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
-                self.mark(a + part * (b - a), character)
+            for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / self.step)):
+                row, column = self.cell(a + part * (b - a))
+                if 0 < row <= self.shape[0] and 0 < column <= self.shape[1]:
+                    self.cells[row, column] = character
 
 
 def ansi(scene: Scene) -> str:
@@ -55,11 +55,11 @@ def ansi(scene: Scene) -> str:
         grid.line(BAULK_LINE, _LINE)
         grid.line(D_ARC, _ARC)
         for spot in COLOUR_SPOTS:
-            grid.mark(spot, _SPOT)
+            grid.cells[grid.cell(spot)] = _SPOT
     for points in scene.paths.values():
         grid.line(points, _PATH)
     hidden = _balls(grid, scene)
-    lines = _frame(grid, scene.table)
+    lines = ["".join(row) for row in grid.cells.tolist()]
     if scene.text:
         lines.append(scene.text)
     lines += wrap(_LEGEND, WIDTH)
@@ -70,11 +70,9 @@ def ansi(scene: Scene) -> str:
 
 def _balls(grid, scene):
     """Put the balls' letters on the grid. Returns the balls that have no cell of their own, as "r under W"."""
-    shared = {}
+    shared, hidden = {}, []
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
-        at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))
-        shared.setdefault(at, []).append(ball)
-    hidden = []
+        shared.setdefault(grid.cell(point.clip(grid.low, grid.high)), []).append(ball)
     for at, balls in shared.items():
         top = min(balls, key=lambda ball: (ball != 0, -ball))  # the cue ball, else the most valuable
         under = "".join(LETTERS[ball] for ball in balls if ball != top)
@@ -84,20 +82,3 @@ def _balls(grid, scene):
         elif under:
             hidden.append(f"{under} under {LETTERS[top]}")
     return hidden
-
-
-def _frame(grid, table):
-    """The grid's lines inside the rails, with the pockets in them."""
-    side, wall = ("═", "║") if len(table.noses) else (" ", " ")
-    rails = [[side] * grid.columns, [side] * grid.columns]
-    corners = [" "] * 4 if not len(table.noses) else list("╔╗╚╝")
-    middle = (grid.left + grid.right) / 2
-    for x, y, _ in table.falls:
-        bottom = int(x > middle)
-        if grid.low + 1e-3 < y < grid.high - 1e-3:
-            for end in (y - 1e-3, y + 1e-3):  # two cells where the middle falls between them
-                rails[bottom][grid.cell((middle, end))[1]] = _POCKET
-        else:
-            corners[2 * bottom + int(y >= grid.high)] = _POCKET
-    top, bottom = (corners[2 * k] + "".join(rails[k]) + corners[2 * k + 1] for k in (0, 1))
-    return [top, *(wall + "".join(row) + wall for row in grid.cells.tolist()), bottom]

@@ -28,10 +28,9 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "first": (44, 104, 180),
     "other": (178, 88, 14),
 }
-"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth over a fall; ``nose``: the edge
-that balls meet; ``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar; ``bar_accent``: marks
-on the pages; ``first``, ``other``:
-the two players' shares of the chance to win, light text on both."""
+"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth over a fall; ``nose``: the edge that balls meet;
+``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar; ``bar_accent``: marks on the pages;
+``first``, ``other``: the two players' shares of the chance to win, light text on both."""
 
 COLOURS: Bytes = np.array(
     [(252, 248, 234)]
@@ -42,6 +41,4 @@ COLOURS: Bytes = np.array(
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
 PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)  # lighter, for paths
 LETTERS = "W" + "r" * 15 + "YGNBPK"  # by ball id: W the cue ball, r a red; N is brown and K black, B is blue
-
-for _constant in (COLOURS, PALE):
-    _constant.setflags(write=False)
+COLOURS.setflags(write=False)

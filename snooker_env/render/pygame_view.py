@@ -61,12 +61,13 @@ _POINTS = 16  # points in a piece
 _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
-def draw_lines(surface: "Surface", lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
-    """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
-    for points, colour in lines:
-        pieces = list(_pieces(points))
-        edge = width + 2 * max(0.9, 0.45 * width)
-        for ink, wide in ((PALETTE["path_edge"], edge), (colour, width)):
+def draw_paths(surface: "Surface", scene: Scene, view: View) -> None:
+    """Put a scene's paths on a surface, later ones on top."""
+    width = max(1.5, 0.0072 * view.scale)
+    edge = width + 2 * max(0.9, 0.45 * width)
+    for ball, points in scene.paths.items():
+        pieces = list(_pieces(view(points)))
+        for ink, wide in ((PALETTE["path_edge"], edge), (tuple(PALE[ball].tolist()), width)):
             surface.fblits([_piece(piece, ink, wide) for piece in pieces])
 
 
@@ -109,12 +110,9 @@ EYE = 2.0  # height of the eye above the bed [m]: a flying ball looks larger
 
 def draw_balls(surface: "Surface", scene: Scene, view: View) -> None:
     """Put a scene's balls, their shadows and faded ghosts on a surface."""
-    radius = scene.ball_radius * view.scale
-    over = lamps(scene.table)
-    images = []
+    radius, over, where = scene.ball_radius * view.scale, lamps(scene.table), view(scene.positions)
     faded = _colour(CUE), round(radius, 2), _FADED, None
-    images += [_at(place, _body, *faded) for place in view(scene.ghosts)]
-    where = view(scene.positions)
+    images = [_at(place, _body, *faded) for place in view(scene.ghosts)]
     images += _shadows(scene.positions, scene.heights / scene.ball_radius, over, where, radius)
     for k in np.argsort(scene.heights, kind="stable").tolist():
         ball, place, size = int(scene.ids[k]), where[k], radius * (1.0 + float(scene.heights[k]) / EYE)
@@ -278,8 +276,7 @@ def draw(scene: Scene, view: View) -> Bytes:
     pixels = table_picture(scene.table, view).copy()
     surface = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into it
     surface.set_clip((0, 0, view.width, view.height - view.bar))
-    lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
-    draw_lines(surface, lines, max(1.5, 0.0072 * view.scale))
+    draw_paths(surface, scene, view)
     draw_balls(surface, scene, view)
     draw_cue(surface, scene, view)
     surface.set_clip(None)
@@ -290,5 +287,4 @@ def draw(scene: Scene, view: View) -> Bytes:
 
 def rgb_array(scene: Scene, *, size: Size = SIZE) -> Bytes:
     """The picture of a scene, uint8 (height, width, 3)."""
-    pygame_()
     return draw(scene, View.of(scene.table, size))

@@ -11,9 +11,8 @@ from ..game.balls import CUE, N_BALLS
 from ..physics.cloth import SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0
 from ..physics.engine import EventKind
 from ..physics.table import Table
-from .outline import RAIL, extent
 from .palette import COLOURS, PALE, PALETTE
-from .scene import find_contacts, trace_paths
+from .scene import RAIL, extent, find_contacts, trace_paths
 from .table_picture import MARGIN, View, table_picture
 
 if TYPE_CHECKING:
@@ -29,7 +28,6 @@ RIM = RAIL + MARGIN  # shown around the bed [m]
 SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
 MOST_SPEEDS = 6  # written along the cue ball's path
 APART = 0.15  # least distance between two of them [m]
-_CALLED = ["time", "kind", "i", "j"]
 NEAR = 0.12  # a cushion nearer than this [m] would be written on
 
 
@@ -45,7 +43,9 @@ def draw_shot(shot: Shot, ax: "Axes | None" = None) -> "Axes":
     for ball in sorted(paths, reverse=True):  # the cue ball last, on top
         points, times = paths[ball]
         draw_path(ax, points, PALE[ball])
-        slides = np.append(_slides(shot, ball, (times[1:] + times[:-1]) / 2), False)
+        rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
+        here = np.searchsorted(rows[:, T0], (times[1:] + times[:-1]) / 2, side="right") - 1
+        slides = np.append(rows[here, SEGMENT_STATE] == SLIDE, False)
         for part in np.split(np.arange(len(times)), np.flatnonzero(np.diff(slides)) + 1):
             if slides[part[0]]:
                 stripe = _flip(points[part[0] : part[-1] + 2]).T
@@ -98,12 +98,6 @@ def draw_path(ax: "Axes", points: Floats, colour: Vector, width: float = 2.2) ->
     ax.plot(*_flip(points).T, color=_rgb(colour), lw=width, zorder=5.0, path_effects=edge, gid="path")
 
 
-def _slides(shot: Shot, ball: int, times: Floats) -> Any:
-    """Whether the ball slides, at each time."""
-    rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
-    return rows[np.searchsorted(rows[:, T0], times, side="right") - 1, SEGMENT_STATE] == SLIDE
-
-
 def _write_speeds(ax: "Axes", shot: Shot) -> None:
     """Write the cue ball's speed at the start and just before its impacts, and the cut at balls."""
     events = shot.events
@@ -113,7 +107,10 @@ def _write_speeds(ax: "Axes", shot: Shot) -> None:
     style: dict[str, Any] = {"textcoords": "offset points", "weight": "bold", "size": 9, "zorder": 8.0}
     style |= {"color": _rgb(PALETTE["text"]), "path_effects": _edge(2.4)}
     written: list[Floats] = []
-    for time, kind, i, j in [(0.0, -1, CUE, CUE), *events[_CALLED][balls | rails].tolist()]:
+    for time, kind, i, j in [
+        (0.0, -1, CUE, CUE),
+        *events[["time", "kind", "i", "j"]][balls | rails].tolist(),
+    ]:
         r, v = shot.at(time)[0][:, :2], shot.at(max(0.0, np.nextafter(time, -1.0)))[1][CUE, :2]
         place, words = r[CUE], f"{np.hypot(*v):.2f} m/s"
         if kind == EventKind.BALL_BALL:
@@ -134,10 +131,9 @@ def _flip(points: object) -> Floats:
     return np.asarray(points, np.float64)[..., ::-1]
 
 
-def _rgb(colour: object, alpha: float = 1.0) -> tuple[float, float, float, float]:
+def _rgb(colour: object, alpha: float = 1.0) -> Any:
     """Red, green and blue up to 255, in matplotlib's form."""
-    red, green, blue = np.asarray(colour, np.float64) / 255
-    return red, green, blue, alpha
+    return (*np.asarray(colour, np.float64) / 255, alpha)
 
 
 def _edge(width: float) -> list[Any]:

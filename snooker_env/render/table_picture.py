@@ -11,8 +11,8 @@ from .._lib.check import integer, refuse
 from .._lib.types import Bytes, Floats
 from ..geometry import COLOUR_SPOTS
 from ..physics.table import Table
-from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, Outline, extent, has_lines, outline
 from .palette import PALETTE
+from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, extent, has_lines, outline
 
 Size: TypeAlias = tuple[int, int]
 SIZE = (1920, 1080)  # default width and height of a picture [pixels]
@@ -79,7 +79,7 @@ def table_picture(table: Table, view: View) -> Bytes:
     _bed(canvas, table)
     if has_lines(table):
         _marks(canvas)
-    _pockets(canvas, parts)
+    _pockets(canvas, table, parts)
     for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
         _cushion(canvas, polygon, nose)
     if parts.cushions:
@@ -167,9 +167,9 @@ def _marks(canvas):
         _paint(image, _INK["line"], 0.9 * canvas.cover(far))
 
 
-def _pockets(canvas, parts: Outline):
+def _pockets(canvas, table, parts):
     """The holes: cloth bends down over the slate's edge in front, leather goes down into the dark behind."""
-    for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
+    for (cx, cy, radius), throat in zip(table.falls.tolist(), parts.throats.tolist(), strict=True):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
         _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * smooth(1 - fall / 0.011))
@@ -276,15 +276,11 @@ def _leather(canvas, image, x, y, throat):
     x0, y0, x1, y1, half = throat
     around = _near(x, y, (x0, y0), (x1, y1), half + 0.06)
     image, x, y = image[around], x[around[0]], y[:, around[1]]
-    length = np.hypot(x0 - x1, y0 - y1)
-    ux, uy = (x0 - x1) / length, (y0 - y1) / length  # towards the table
-    out = np.linspace(-0.05, length, 200)
-    wx, wy = uy * (half + _RIM), ux * (half + _RIM)  # aside
-    outer = [canvas.box(x1 + ux * out + s * wx, y1 + uy * out - s * wy, CUSHION) for s in (-1, 1)]
-    over = np.flatnonzero(np.maximum(*outer) < -0.007)
-    end = float(out[over[0]]) if len(over) else length
-    hole = _capsule(x, y, throat)
-    cut = (x - x1) * ux + (y - y1) * uy - end
+    fall, mouth = np.array([x1, y1]), np.array([x0, y0])
+    way = (mouth - fall) / np.hypot(*(mouth - fall))
+    each, outside = np.maximum(np.abs(way), 1e-9), np.abs(fall - canvas.middle) - canvas.half - CUSHION
+    end = np.max((outside + each[::-1] * (half + _RIM) + 0.007) / each)  # both edges are over cushions
+    hole, cut = _capsule(x, y, throat), (x - x1) * way[0] + (y - y1) * way[1] - end
     t = hole / _RIM
     shade = 0.45 + 0.85 * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, 1)) - 0.35 * smooth(1 + cut / 0.004)
     ridge = 0.6 * np.exp(-(((t - 0.42) / 0.16) ** 2))[..., None]

@@ -86,12 +86,10 @@ class Window:
             if driver in _INVISIBLE and not os.environ.get("SDL_VIDEODRIVER"):
                 raise pygame.error(f"SDL found only its driver {driver!r}")
             pygame.display.set_caption("snooker")
-            width, height = self._size or SIZE
-            if self._size is None:
-                desk_width, desk_height = pygame.display.get_desktop_sizes()[0]
-                part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
-                width, height = round(part * width), round(part * height)
-            self._screen = pygame.display.set_mode((width, height), pygame.RESIZABLE)
+            wide, high = pygame.display.get_desktop_sizes()[0]
+            part = min(1.0, 0.92 * wide / SIZE[0], 0.88 * high / SIZE[1])
+            size = self._size or (round(part * SIZE[0]), round(part * SIZE[1]))
+            self._screen = pygame.display.set_mode(size, pygame.RESIZABLE)
         except pygame.error as error:
             pygame.display.quit()
             raise _no_display(error) from None

@@ -16,12 +16,13 @@ from stable_baselines3 import PPO
 import snooker_env as sn
 import train
 from agents.evaluation import training_summary
+from agents.evaluation.visit_figures import summary
 from agents.learning import agent_training, expert_iteration, hyperparameters
 from agents.learning.agent_training import recipe_of
 from agents.learning.loop import Loop
 from agents.learning.settings import Settings
 from agents.players.trained import load_player
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import play_visits
 from snooker_env.benchmark.tasks import tables_of
 from tests.agents.training import TINY, results, resume, run, weights
 from tests.processes import ROOT, replace

@@ -5,13 +5,14 @@ import pytest
 import torch
 
 import snooker_env as sn
+from agents.evaluation.visit_figures import summary
 from agents.features.observed import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import ExpertIteration
 from agents.learning.hyperparameters import Recipe
 from agents.learning.models import load_trained
 from agents.players.trained import load_player
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import play_visits
 from snooker_env.physics import conditions
 from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Positions

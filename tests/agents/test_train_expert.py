@@ -3,9 +3,9 @@
 import pytest
 
 import snooker_env as sn
+from agents.evaluation.visit_figures import summary
 from agents.learning import loop
-from snooker_env.benchmark import count_shots
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import count_shots, play_visits
 from tests.agents import training
 from tests.agents.training import results
 

@@ -12,7 +12,7 @@ from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, judge
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import BEGIN, END, lines, page
 from snooker_env.benchmark.results import read_result
-from snooker_env.benchmark.statistics import bound_if_none, interval
+from snooker_env.benchmark.statistics import bound_if_none, figure
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
 
@@ -78,7 +78,10 @@ def test_figures_are_those_of_the_rows(made):
     assert f["best"] == scores.max() and f["by_run"] == [pytest.approx(scores.mean())]
     rng = np.random.default_rng(5)
     drawn = scores[rng.integers(len(scores), size=(20_000, len(scores)))].mean(axis=1)
-    assert (f["score"]["low"], f["score"]["high"]) == pytest.approx(interval(drawn), rel=0.08)
+    again = figure(scores.mean(), drawn)
+    assert [f["score"][end] for end in ("low", "high")] == pytest.approx(
+        [again["low"], again["high"]], rel=0.08
+    )
     for entry in f["profile"]:
         assert entry["value"] == pytest.approx(np.mean(scores >= entry["at_least"]))
     never = f["profile"][-1]

@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from agents.evaluation.entrants import Entrant
-from agents.evaluation.metrics import EntrantMetrics
+from agents.evaluation.metrics import EntrantMetrics, draw_ratios
 from snooker_env.benchmark.statistics import Resamples, iqm
 
 
@@ -28,14 +28,14 @@ def test_samples_are_those_of_a_plain_bootstrap():
     rng = np.random.default_rng(1)
     x, y = rng.integers(0, 9, (3, 40)).astype(float), rng.integers(1, 5, (3, 40)).astype(float)
     samples = Resamples(3, 40, 50, seed=2)
-    sums, ratios, iqms = samples.sums(x), samples.ratios(x, y), samples.iqms(x)
+    sums, shares, iqms = samples.sums(x), draw_ratios(samples, x, y), samples.iqms(x)
     for k in range(50):
         runs = np.repeat(np.arange(3), samples._runs[k].astype(int))
         tables = np.repeat(np.arange(40), samples._visits[k].astype(int))
         assert len(runs) == 2 and len(tables) == 40
         drawn = x[np.ix_(runs, tables)]
         assert sums[k] == pytest.approx(drawn.sum())
-        assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
+        assert shares[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
         assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
 
 

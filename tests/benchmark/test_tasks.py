@@ -10,12 +10,12 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import snooker_env as sn
 from snooker_env._lib.registration import ENTRY_POINTS, FORMS
-from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS
+from snooker_env.benchmark import COLUMNS, HELD_OUT_SEED, TASKS, play_visits
 from snooker_env.benchmark.playing import Repeater, play_episodes, rows_of, tables_for
-from snooker_env.benchmark.tasks import FREE
+from snooker_env.benchmark.tasks import FREE, tables_of
 from snooker_env.game import layout
 from snooker_env.game.frame_columns import OPPONENT
-from snooker_env.game.layouts import STORED_IN
+from snooker_env.game.layouts import HELD_OUT, STORED_IN
 from snooker_env.players import BoundPlayer, Strokes
 
 IDS = tuple(TASKS)
@@ -150,3 +150,22 @@ def test_a_frame_meets_one_of_four_players_and_the_same_again():
     assert met[0] == met[1] and set(met[0]) <= {1, 2, 3, 4} and len(set(met[0])) > 1
     with pytest.raises(ValueError, match=r"members\[1\] of the OpponentPool: opponent = 'nobody'"):
         sn.SnookerEnv(task="frame", opponent="random,nobody")
+
+
+def test_a_player_plays_alike_however_actions_are_read_and_whatever_is_seen():
+    forms = {}, {"aim": "target", "observation": "balls"}, {"action": "discrete", "observation": "masked"}
+    played = [play_visits("ghost_ball", 3, layout="colours", **form).points.tolist() for form in forms]
+    assert played[0] == played[1] == played[2] and sum(played[0]) > 0
+
+
+@pytest.mark.slow
+def test_no_table_comes_twice_or_mirrored():
+    seeds = tables_of("held_out", 100)
+    assert seeds == tuple(sorted(set(seeds))) and seeds[0] == HELD_OUT_SEED
+    tables = sn.SnookerVectorEnv(100, layout="held_out")
+    tables.reset(seed=seeds)
+    reds = np.sort(np.abs(tables.tables.positions[:, 1:16, 0]), axis=1)
+    apart = np.abs(reds[:, None] - reds[None]).max(axis=2) + np.eye(100)
+    assert apart.min() > 1e-6
+    with pytest.raises(ValueError, match=f"visits = {100 * HELD_OUT}: must be at most {HELD_OUT} "):
+        tables_of("held_out", 100 * HELD_OUT)

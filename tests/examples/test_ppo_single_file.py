@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 import torch
 
+from agents.evaluation.visit_figures import summary
 from agents.players.trained import load_player
 from examples import ppo_single_file as example
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import play_visits
 
 
 def test_advantages_are_those_of_the_definition():

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark.rollouts import play_visits, summary
+from agents.evaluation.visit_figures import summary
+from snooker_env.benchmark import play_visits
 from snooker_env.players import VISITS
 from snooker_env.players.menu_network import MenuNetwork
 from snooker_env.players.weights import learned_menu

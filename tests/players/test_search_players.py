@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import count_shots
-from snooker_env.benchmark.rollouts import play_visits, summary
+from agents.evaluation.visit_figures import summary
+from snooker_env.benchmark import count_shots, play_visits
 from snooker_env.game import frame_columns as columns
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.learned_worth import LearnedValue

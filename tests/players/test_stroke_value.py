@@ -8,8 +8,9 @@ import pytest
 
 import snooker_env as sn
 import train
+from agents.evaluation.visit_figures import summary
 from agents.learning import learn_strokes
-from snooker_env.benchmark.rollouts import play_visits, summary
+from snooker_env.benchmark import play_visits
 from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import SIZE

@@ -5,9 +5,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import CUE, N_BALLS, SPOTS
-from snooker_env.render.outline import outline
 from snooker_env.render.pygame_view import rgb_array
-from snooker_env.render.scene import scene
+from snooker_env.render.scene import outline, scene
 from tests.pictures import to_pixels
 
 MATCH = sn.Table.preset("match")

@@ -10,8 +10,8 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import NAMES, SPOTS, VALUES
 from snooker_env.geometry import BAULK_Y, D_RADIUS
-from snooker_env.render.outline import outline, scene_data
 from snooker_env.render.palette import COLOURS, PALETTE
+from snooker_env.render.scene import outline, scene_data
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom"])
@@ -22,8 +22,7 @@ def test_the_json_is_the_table(name):
         assert len(data[key]) == len(getattr(parts, key))
         for given, own in zip(data[key], getattr(parts, key), strict=True):
             assert np.array(given) == pytest.approx(own, abs=5.1e-7)
-    for key in ("falls", "throats"):
-        own = getattr(parts, key)
+    for key, own in (("falls", table.falls), ("throats", parts.throats)):
         assert np.array(data[key]).reshape(own.shape) == pytest.approx(own, abs=5.1e-7)
     assert data["extent"] == pytest.approx(table.bounds, abs=5.1e-7)
     assert data["ball_radius"] == table.ball_radius

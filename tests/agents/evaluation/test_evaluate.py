@@ -11,9 +11,9 @@ import pytest
 
 from agents import evaluate, report
 from agents._lib.physics_option import physics_option, physics_text
+from agents.evaluation.visit_figures import FIGURES
 from agents.features.observed import training_tables
 from agents.learning.hyperparameters import Recipe
-from snooker_env.benchmark.rollouts import FIGURES
 from snooker_env.physics.parameters import Physics
 from tests.agents.training import interrupted_at
 

@@ -9,8 +9,8 @@ from scipy import stats
 from agents import report
 from agents._lib.tables import WIDTH, TextTable
 from agents.evaluation.training_summary import conclusion
+from agents.evaluation.visit_figures import most_points
 from snooker_env.benchmark.statistics import bound_if_none
-from snooker_env.benchmark.tasks import most_points
 from tests.processes import ROOT
 
 GHOST = {"from": "ghost_ball"}
