@@ -110,9 +110,11 @@ def report(training, learned, figures, results, best, noise):
     watch = shlex.join([python(), "-m", "snooker_env.watch", *words])
     without = f", without {results['without']}" if "without" in results else ""
     print(f"{learned}\nShots simulated in training{without}: {results['simulated_shots']:,}.")
+    if (out / "curve.png").is_file():
+        print(f"Learning curve: {out / 'curve.png'}")
     print(f"Figures: {out / 'results.json'}\nWatch a break:  {watch}")
     if (out / "tb").is_dir():
-        print(f"Curves: tensorboard --logdir {out / 'tb'}")
+        print(f"All curves: tensorboard --logdir {out / 'tb'}")
 
 
 @command("train.py")

@@ -17,14 +17,14 @@ from pathlib import Path
 
 INTERRUPTED = 130
 """The exit code after Ctrl-C, as in shells."""
-EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "cluster"}
+EXTRAS = {"scipy": "test", "pygame": "render", "ray": "cluster"}
 """Package that is not in [train] -> the extra of pyproject.toml that installs it."""
 OUR_OWN = ("agents", "snooker_env", "train", "benchmarks")
 
 
 def installs(extra):
     """The line that installs an extra in a clone, where the commands of this repository run."""
-    return f'pip install -e ".[{extra}]"'
+    return f'pip install -c constraints.txt -e ".[{extra}]"'
 
 
 def python():

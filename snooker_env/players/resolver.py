@@ -169,6 +169,8 @@ def _make(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
+        if isinstance(error, ImportError) and not error.name:  # its text says what to install
+            raise
         allowed = f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
         raise refuse("player", name, allowed) from error
 

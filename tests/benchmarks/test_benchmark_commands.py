@@ -120,5 +120,5 @@ def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
 def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path):
     (tmp_path / "scipy.py").write_text("raise ModuleNotFoundError('No module named scipy', name='scipy')")
     code, out, err = ended(started("paper", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
-    said = 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'
+    said = 'scipy is missing; in a clone of the repository:  pip install -c constraints.txt -e ".[test]"'
     assert (code, out, err) == (1, "", f"{said}\n")

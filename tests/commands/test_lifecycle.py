@@ -59,6 +59,7 @@ runpy.{start}, run_name="__main__")
         ("numpy", "train", "train.py"),
         pytest.param("yaml", "train", "agents.evaluate --agent random", marks=pytest.mark.slow),
         ("torch", "train", "agents.evaluate --agent ppo_value"),
+        ("yaml", "train", "snooker_env.watch --agent ppo_value"),
         ("numba", "train", "agents.calibrate x"),
         ("sb3_contrib", "train", "agents.curves"),
     ],
@@ -66,7 +67,7 @@ runpy.{start}, run_name="__main__")
 def test_a_command_says_what_is_missing(package, extra, command):
     target, *arguments = command.split()
     done = without(package, target, *arguments)
-    where = f'in a clone of the repository:  pip install -e ".[{extra}]"'
+    where = f'in a clone of the repository:  pip install -c constraints.txt -e ".[{extra}]"'
     assert done.stderr == f"{target}: {package} is missing; {where}\n" and done.returncode == 1
 
 

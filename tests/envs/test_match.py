@@ -87,7 +87,7 @@ def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
 def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
     lacking = "assert 'pettingzoo' not in sys.modules\nsys.modules['pettingzoo'] = None"
     code = f"import sys, snooker_env as sn\n{lacking}\ntry: sn.match_env()\nexcept ImportError as e: print(e)"
-    needs = f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'
+    needs = f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -c constraints.txt -e ".[multi]"'
     assert python(code)[0].strip() == needs
 
 

@@ -101,7 +101,7 @@ def test_without_stable_baselines_one_line_says_how_to_get_it():
     lacking = "import sys\nsys.modules['stable_baselines3'] = None"
     code = f"{lacking}\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)"
     needs = "snooker_env.sb3 needs Stable-Baselines3; install it, in the clone"
-    assert python(code)[0].strip() == f'{needs} {ROOT}, with: pip install -e ".[train]"'
+    assert python(code)[0].strip() == f'{needs} {ROOT}, with: pip install -c constraints.txt -e ".[train]"'
 
 
 def test_attributes():

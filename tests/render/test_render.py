@@ -112,7 +112,7 @@ def test_text_never_hides_the_cue_ball():
 def test_without_pygame_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pygame", None)
     for draw in (rgb_array, Window().draw):
-        with pytest.raises(ImportError, match=re.escape('pip install -e ".[render]"')):
+        with pytest.raises(ImportError, match=re.escape('pip install -c constraints.txt -e ".[render]"')):
             draw(scene("match", SPOTS))
     assert "W" in ansi(scene("match", SPOTS))
 

@@ -54,7 +54,7 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
         "try: env.render()\n"
         "except ImportError as error: print(error)\n"
     )
-    wanted = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'
+    wanted = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -c constraints.txt -e ".[render]"'
     assert out.splitlines() == ["True", wanted]
     assert err == ""
 
@@ -66,7 +66,9 @@ def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
     assert out == 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"\n'
     (tmp_path / "pyproject.toml").touch()
     out, _ = python(code, at=tmp_path)
-    assert f'install it, in the clone {tmp_path}, with: pip install -e ".[render]"\n' in out
+    assert (
+        f'install it, in the clone {tmp_path}, with: pip install -c constraints.txt -e ".[render]"\n' in out
+    )
 
 
 @pytest.mark.parametrize(
