@@ -4,11 +4,12 @@
 import contextlib
 import json
 import os
-import queue
 import shlex
 import subprocess
 import threading
 import time
+from collections.abc import Callable
+from concurrent.futures import Future, wait
 from typing import Any
 
 import numpy as np
@@ -132,47 +133,31 @@ class _Lines:
         self.command, self.timeout, self._words = command, timeout, words
         self._process: Any = None
 
-    def _start(self):
-        try:
-            self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        except OSError as error:
-            raise self.failure(f"cannot be started: {error}") from None
-        self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
-        self._states: queue.Queue[bytes] = queue.Queue()
-        self._taken = threading.Event()  # the program has read all that was written
-        self._taken.set()
-        self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
-        self._writer = threading.Thread(target=self._write, args=(self._process.stdin,), daemon=True)
-        self._reader.start()
-        self._writer.start()
-
     def ask(self, line: bytes) -> bytes:
         if self._process is None:
-            self._start()
-        until = time.monotonic() + self.timeout
-        try:
-            answer = self._answers.get_nowait()
-        except queue.Empty:
-            self._taken.clear()
-            self._states.put(line)
             try:
-                answer = self._answers.get(timeout=self.timeout)
-            except queue.Empty:
-                raise self.failure(f"gave no stroke within {self.timeout:g} s") from None
-            if answer and not self._taken.wait(max(0.0, until - time.monotonic())):
-                raise self.failure(f"did not read its state within {self.timeout:g} s") from None
-        else:
-            if answer:
-                raise self.failure(f"answered {_short(answer)} without a state: one line for each")
-        if len(answer) > LONGEST:
-            raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
+                self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+            except OSError as error:
+                raise self.failure(f"cannot be started: {error}") from None
+            self._answer = _in_thread(self._process.stdout.readline, LONGEST + 1)
+        unasked, until = self._answer.done(), time.monotonic() + self.timeout
+        self._written = _in_thread(_write, self._process.stdin.fileno(), line)
+        if not wait([self._answer], self.timeout).done:
+            raise self.failure(f"gave no stroke within {self.timeout:g} s")
+        answer = self._answer.result()
         if not answer:
-            process: Any = self._process
             try:
-                code = process.wait(2.0)
+                code = self._process.wait(2.0)
             except subprocess.TimeoutExpired:
                 raise self.failure("closed its output") from None
             raise self.failure(f"ended with exit code {code} instead of a stroke")
+        if unasked:
+            raise self.failure(f"answered {_short(answer)} without a state: one line for each")
+        if len(answer) > LONGEST:
+            raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
+        if not wait([self._written], until - time.monotonic()).done:
+            raise self.failure(f"did not read its state within {self.timeout:g} s")
+        self._answer = _in_thread(self._process.stdout.readline, LONGEST + 1)
         return answer
 
     def failure(self, what: str) -> AgentError:
@@ -182,39 +167,30 @@ class _Lines:
         process, self._process = self._process, None
         if process is None:
             return
-        if not self._taken.is_set():  # it does not read: the end of its input would not reach it
+        if not self._written.done():  # it does not read: the end of its input would not reach it
             process.kill()
-        self._states.put(b"")
-        self._writer.join(2.0)
-        if not self._writer.is_alive():
-            with contextlib.suppress(OSError):  # it has gone already
-                process.stdin.close()
+        if wait([self._written], 2.0).done:
+            process.stdin.close()
         try:
             process.wait(2.0)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-        until = time.monotonic() + 2.0
-        while self._reader.is_alive() and time.monotonic() < until:
-            with contextlib.suppress(queue.Empty):  # what it still had to say
-                self._answers.get(timeout=0.02)
-        if not self._reader.is_alive():  # a child of the program may hold its output open
+        if wait([self._answer], 2.0).done:  # else a child of the program holds its output open
             process.stdout.close()
 
-    def _read(self, output):
-        line = b" "
-        while line and len(line) <= LONGEST:
-            line = output.readline(LONGEST + 1)
-            self._answers.put(line)
 
-    def _write(self, input_):
-        """Write states, in a thread of its own: a program that does not read stops whoever writes to it."""
-        pipe = input_.fileno()
-        while text := self._states.get():
-            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
-                while text:
-                    text = text[os.write(pipe, text) :]
-                self._taken.set()
+def _in_thread(call: Callable[..., Any], *args: Any) -> Future[Any]:
+    """The result of a call that may wait for ever: its thread stops neither its caller nor the end of Python."""
+    future: Future[Any] = Future()
+    threading.Thread(target=lambda: future.set_result(call(*args)), daemon=True).start()
+    return future
+
+
+def _write(pipe: int, text: bytes) -> None:
+    with contextlib.suppress(OSError):  # nobody reads; its output says that it ended
+        while text:
+            text = text[os.write(pipe, text) :]
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:

@@ -223,11 +223,11 @@ class PolicyProposals:
         masks = action_masks(at, rails=rails)
         return self.policy.scores(with_pots(at.observations()), masks), masks
 
-    def __call__(self, search: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
+    def __call__(self, judge: Asking, at: Positions, m: int, seeds: Ints) -> Proposals:
         """m strokes for each position, see ``Propose``."""
-        scores, masks = self.scores(at, search.dynamics.rails)
+        scores, masks = self.scores(at, judge.dynamics.rails)
         picks, tips = draw_choices(scores, masks, m, seeds)
-        return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)
+        return strokes_at(at, picks // STROKES, tips, judge.spread, judge.dynamics)
 
 
 def draw_choices(scores: Floats | Singles, masks: Bools, m: int, seeds: Ints) -> tuple[Ints, Floats]:
