@@ -13,8 +13,8 @@ from .._lib.types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
+from ..players.search_player import StrokeValuePlayer
 from ..players.seen import SeenPlayer
-from ..players.stroke_value_player import StrokeValuePlayer
 from ..simulation import count_shots
 from .luck_counter import Decide, Luck
 from .tasks import Task

@@ -155,7 +155,7 @@ class _Lines:
             raise self.failure(f"answered {_short(answer)} without a state: one line for each")
         if len(answer) > LONGEST:
             raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
-        if not wait([self._written], until - time.monotonic()).done:
+        if not (wait([self._written], until - time.monotonic()).done and self._written.result()):
             raise self.failure(f"did not read its state within {self.timeout:g} s")
         self._answer = _in_thread(self._process.stdout.readline, LONGEST + 1)
         return answer
@@ -187,10 +187,12 @@ def _in_thread(call: Callable[..., Any], *args: Any) -> Future[Any]:
     return future
 
 
-def _write(pipe: int, text: bytes) -> None:
-    with contextlib.suppress(OSError):  # nobody reads; its output says that it ended
+def _write(pipe: int, text: bytes) -> bool:
+    """Whether the program reads all of the text; that it ended is seen by its output."""
+    with contextlib.suppress(OSError):
         while text:
             text = text[os.write(pipe, text) :]
+    return not text
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.benchmark.rollouts import play_visits, summary
 from snooker_env.players import VISITS
-from snooker_env.players.menu_network import MenuNetwork
+from snooker_env.players.seen import MenuNetwork
 from snooker_env.players.weights import learned_menu
 from tests.processes import python
 
