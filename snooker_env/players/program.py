@@ -4,11 +4,11 @@
 import contextlib
 import json
 import os
+import queue
 import shlex
 import subprocess
-import threading
 import time
-from collections.abc import Callable
+from _thread import start_new_thread
 from concurrent.futures import Future, wait
 from typing import Any
 
@@ -139,12 +139,15 @@ class _Lines:
                 self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
             except OSError as error:
                 raise self.failure(f"cannot be started: {error}") from None
-            self._answer = _in_thread(self._process.stdout.readline, LONGEST + 1)
-        unasked, until = self._answer.done(), time.monotonic() + self.timeout
-        self._written = _in_thread(_write, self._process.stdin.fileno(), line)
-        if not wait([self._answer], self.timeout).done:
-            raise self.failure(f"gave no stroke within {self.timeout:g} s")
-        answer = self._answer.result()
+            self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
+            start_new_thread(self._read, (self._process, self._answers))
+        unasked, until = not self._answers.empty(), time.monotonic() + self.timeout
+        self._read_all: Future[bool] = Future()  # whether the program has read all that was written
+        start_new_thread(_write, (self._process.stdin.fileno(), line, self._read_all))
+        try:
+            answer = self._answers.get(timeout=self.timeout)
+        except queue.Empty:
+            raise self.failure(f"gave no stroke within {self.timeout:g} s") from None
         if not answer:
             try:
                 code = self._process.wait(2.0)
@@ -155,9 +158,8 @@ class _Lines:
             raise self.failure(f"answered {_short(answer)} without a state: one line for each")
         if len(answer) > LONGEST:
             raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
-        if not (wait([self._written], until - time.monotonic()).done and self._written.result()):
+        if not (wait([self._read_all], until - time.monotonic()).done and self._read_all.result()):
             raise self.failure(f"did not read its state within {self.timeout:g} s")
-        self._answer = _in_thread(self._process.stdout.readline, LONGEST + 1)
         return answer
 
     def failure(self, what: str) -> AgentError:
@@ -167,32 +169,32 @@ class _Lines:
         process, self._process = self._process, None
         if process is None:
             return
-        if not self._written.done():  # it does not read: the end of its input would not reach it
+        if not self._read_all.done():  # it does not read: the end of its input would not reach it
             process.kill()
-        if wait([self._written], 2.0).done:
+        if wait([self._read_all], 2.0).done:
             process.stdin.close()
         try:
             process.wait(2.0)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-        if wait([self._answer], 2.0).done:  # else a child of the program holds its output open
-            process.stdout.close()
+        with contextlib.suppress(queue.Empty):  # a reader that waits for room goes on, and ends
+            self._answers.get_nowait()
+
+    def _read(self, process, answers):
+        with process.stdout:
+            line = b" "
+            while line and len(line) <= LONGEST and process is self._process:
+                line = process.stdout.readline(LONGEST + 1)
+                answers.put(line)
 
 
-def _in_thread(call: Callable[..., Any], *args: Any) -> Future[Any]:
-    """The result of a call that may wait for ever: its thread stops neither its caller nor the end of Python."""
-    future: Future[Any] = Future()
-    threading.Thread(target=lambda: future.set_result(call(*args)), daemon=True).start()
-    return future
-
-
-def _write(pipe: int, text: bytes) -> bool:
-    """Whether the program reads all of the text; that it ended is seen by its output."""
-    with contextlib.suppress(OSError):
+def _write(pipe, text, read_all):
+    """Write a text, in a thread of its own: a program that does not read stops whoever writes to it."""
+    with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
         while text:
             text = text[os.write(pipe, text) :]
-    return not text
+    read_all.set_result(not text)
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
