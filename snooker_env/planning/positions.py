@@ -278,12 +278,8 @@ def check_rails(rails: Floats) -> Floats:
 
 
 def seeds_of(seeds: Integers, n: int) -> Ints:
-    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
-    a = np.asarray(seeds)
-    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        allowed = f"must be {n} integers, one for each position"
-        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", allowed)
-    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+    """The last 32 bits of ``seeds``, one for each of n positions: int64 (n,)."""
+    return integers("seeds", seeds, -(2**63), 2**64 - 1, n) & 0xFFFFFFFF
 
 
 def check_has_stroke(at: Positions, rows: Ints, table: Table, radius: float) -> None:

@@ -1,9 +1,5 @@
-"""Which strokes are worth a look? Generators: each makes m continuous strokes for each of n positions, of n seeds.
-
-``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to (chance x nearness)^4 x worth. Its
-strokes are consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its
-side. ``at_balls``, ``safeties``: evenly to the places where a ball on is met first (``tasks.windows``). ``over_cushions``: about
-the escapes of ``tasks.escapes``."""
+"""Which strokes are worth a look? Generators: each makes m continuous strokes for each of n positions, of n seeds. At pots their
+numbers go with (chance x nearness)^4 x worth; their speeds, heights and sides are Sobol points (docs/agents/planner.md)."""
 
 from collections.abc import Callable
 from math import atan2, exp, hypot, log, pi

@@ -209,9 +209,10 @@ class StrokeValuePlayer(FramePlayer):
 
     name = "stroke_value"
     search: FrameStrokes
+    values: StrokeValue
 
     def __init__(self, learned: StrokeLayers | None = None):
-        self._given, self.values = learned, None
+        self._given = learned
 
     def _bind(self, options: Options) -> None:
         rules, level = options.rules, level_for(options.rules.noise)
@@ -270,10 +271,7 @@ class StrokeValuePlayer(FramePlayer):
 
     def _score(self, at: Positions, seeds: Integers) -> tuple[Positions, Floats, Candidates, Any]:
         """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""
-        options, values = self.options, self.values  # it must be bound
-        assert values is not None, options
-        at = at.known_to(options.rules)
-        keys = seeds_of(seeds, len(at))
+        at, keys = at.known_to(self.options.rules), seeds_of(seeds, len(at))
         visits, places = place_cue_balls(at, keys)
-        found = values.candidates(visits, LOOKS, keys)
-        return at, places, found, values.scores(found.seen)
+        found = self.values.candidates(visits, LOOKS, keys)
+        return at, places, found, self.values.scores(found.seen)

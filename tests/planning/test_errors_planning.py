@@ -81,7 +81,7 @@ VisitJudge(3) | env_or_options | a int | must be an environment
 Search({}) | judge | a dict | must be a VisitJudge or a FrameJudge
 Search(JUDGE, ?) | budget | ? | must | 7; -1; 30.0; "30"; None
 Search(JUDGE).rank(3, [1]) | positions | a int | must be Positions, a Position
-Search(JUDGE).rank(MANY[:2], ?) | seeds | array of shape | must be 2 integers | [1]; 1; [[1, 2]]; [1.0, 2.0]; [True, False]
+Search(JUDGE).rank(MANY[:2], ?) | seeds | array of shape | must be integers of shape (2,) | [1]; 1; [[1, 2]]; [1.0, 2.0]; [True, False]
 Search(JUDGE).rank(spoilt("on_table", 0, False), [1, 2, 3, 4]) | positions[2].cue | None | must
 Search(JUDGE).rank(spoilt("game", 3, 1), [1, 2, 3, 4]) | positions[2].over | True | must
 Search(FRAMES).rank(AT, [0]) | positions | those of visits | must be of frames
