@@ -155,7 +155,7 @@ def test_the_ranking_recomputed(budget, value):
     total = sum(each for _, each in rounds)
     for k, seed in enumerate(seeds):
         here = at[k : k + 1]
-        strokes, chances = (one[0] for one in at_pots(tool, here, looks, [seed]))
+        strokes, chances = (one[0] for one in at_pots(tool.judge, here, looks, [seed]))
         look = chances * gains_by_hand(tool, here, strokes, np.zeros((1, 5)), worth)[:, 0]
         gains = gains_by_hand(
             tool, here, strokes, tool.judge.noise.errors_from(normal_points(total, seed)), worth
@@ -223,7 +223,7 @@ def test_generators_that_have_strokes_share_the_looks():
 
     def soft(tool, here, m, scrambles):
         calls.append(len(here))
-        made = at_pots(tool, here, m, scrambles)
+        made = at_pots(tool.judge, here, m, scrambles)
         made.strokes[..., 0] = 1.0
         made.chances[1] = 0.0
         return made
