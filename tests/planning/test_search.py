@@ -149,7 +149,7 @@ def test_the_ranking_recomputed(budget, value):
     """Sequential halving in plain Python, by score = (2 look + sum) / (2 + samples), look = chance x gain."""
     at, seeds = some(4), [3, 2**32 - 1, 0, 17]
     tool = search(budget, value=value)
-    worth = value or (lambda left: prospects_of(left, tool.spread, RULE_OF_THUMB)[0])
+    worth = value or (lambda left: prospects_of(left, tool.judge.spread, RULE_OF_THUMB)[0])
     ranked = tool.rank(at, seeds)
     (looks,), rounds = schedule(budget)
     total = sum(each for _, each in rounds)
@@ -221,9 +221,9 @@ def test_without_a_pot_fouls_and_what_is_left_count():
 def test_generators_that_have_strokes_share_the_looks():
     at, calls = some(3), []
 
-    def soft(tool, here, m, scrambles):
+    def soft(judge, here, m, scrambles):
         calls.append(len(here))
-        made = at_pots(tool.judge, here, m, scrambles)
+        made = at_pots(judge, here, m, scrambles)
         made.strokes[..., 0] = 1.0
         made.chances[1] = 0.0
         return made

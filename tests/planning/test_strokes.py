@@ -65,7 +65,7 @@ def test_an_aim_from_a_target_line_is_that_of_the_nominated_ball():
     position = Position(cue=(0.1, -0.6), reds=[(-0.6, -0.2)], on="any_colour", **colours)
     env.reset(seed=1, options={"position": position})
     at = Positions.of(env)[np.zeros(20, int)]
-    actions = rng.uniform(-0.9, 0.9, (20, 5)) * (1.0, 1.0, 1.0, 0.0, 1.0)
+    actions = rng.uniform(-0.9, 0.9, (20, 5)) * (0.0, 1.0, 1.0, 0.0, 1.0)
     nominated, *_ = sayings(options.rules, actions, at.game)
     assert len(set(nominated.tolist())) == 4
     values, _ = decode(options.rules, at, np.arange(20), actions, nominated)
