@@ -1,6 +1,7 @@
 """How do players search? ``search`` judges by the rule of thumb and looks at strokes spread over the pots, ``planner`` by the
 learned value at those that the learned policy proposes; ``best_pot`` plays the likeliest pot. The ``tactician`` searches frames
-for pots, safeties and escapes, and takes all decisions of a frame by one worth for both players."""
+for pots, safeties and escapes, and takes all decisions of a frame by one worth for both players. ``stroke_value`` simulates no
+shot: in visits it plays the pot, in frames the stroke, that its networks say is worth most; without one as ``ghost_ball``."""
 
 from typing import Any, NamedTuple
 

@@ -164,7 +164,7 @@ def begun(at: Positions) -> Positions:
 
 
 class MenuNetwork:
-    """Chooses from menus of a "visit" or a "frame", see ``Seen``, by ``layers`` that read a stroke and the state."""
+    """A ``Seen`` that chooses from menus of a "visit" or a "frame" by the ``layers`` of a ``snooker_env.sb3.StrokesPolicy``."""
 
     def __init__(self, layers: Weights, task: str) -> None:
         self.options: dict[str, str] = {"action": "strokes", "observation": "strokes", "task": task}
