@@ -43,7 +43,7 @@ with needs("agents.evaluate"):
     from snooker_env.benchmark.tasks import tables_of
     from snooker_env.checks import integer, parse_fidelity, refuse
     from snooker_env.game.layouts import plan_of
-    from snooker_env.players.model_options import add_model_options
+    from snooker_env.players.saved_models import add_model_options
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 

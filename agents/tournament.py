@@ -31,7 +31,7 @@ with needs("agents.tournament"):
     from snooker_env.benchmark.statistics import RESAMPLES
     from snooker_env.checks import integer, refuse
     from snooker_env.players import FRAMES
-    from snooker_env.players.model_options import add_model_options
+    from snooker_env.players.saved_models import add_model_options
     from snooker_env.progress import Progress
 
     from .cluster import ClusterError, Here, add_ray, checked_ray, place

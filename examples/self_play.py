@@ -28,7 +28,7 @@ from agents._lib.provenance import provenance
 from agents.learning.export import layers_of_menu
 from agents.learning.frame_self_play import win_share
 from snooker_env.players import SeenPlayer, player
-from snooker_env.players.menu_network import MenuNetwork
+from snooker_env.players.seen import MenuNetwork
 from snooker_env.players.weights import learned_menu
 from snooker_env.progress import Progress
 from snooker_env.sb3 import StrokesPolicy

@@ -15,8 +15,8 @@ from .benchmark import HELD_OUT_SEED
 from .envs.snooker import SnookerEnv
 from .planning import Positions
 from .players import FRAMES, VISITS, Player, decision_seeds, player
-from .players.model_options import add_model_options, of_others, options_of_words
 from .players.resolver import players_of
+from .players.saved_models import add_model_options, of_others, options_of_words
 from .replays import replay
 from .replays.document import FILMS, SUFFIXES
 from .replays.film import encoder_file

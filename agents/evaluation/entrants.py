@@ -10,9 +10,8 @@ from agents._lib.physics_option import physics_text
 from snooker_env import Options, player, players
 from snooker_env.checks import integer, number, refuse
 from snooker_env.players import SeenPlayer
-from snooker_env.players.model_options import options_of_words
 from snooker_env.players.resolver import is_name
-from snooker_env.players.saved_models import SavedModel, saved_player
+from snooker_env.players.saved_models import SavedModel, options_of_words, saved_player
 
 from ..learning.model_files import Trained
 from ..learning.models import POLICY, PRETRAINED, file_of, pretrained_names
@@ -32,7 +31,7 @@ class Entrant:
     trust: bool = False
     """Whether code in its files may run; Stable-Baselines3 models not made by train.py need this."""
     options: tuple = ()
-    """How to interpret the actions of such models: (key, value) of ``model_options.KEYS``."""
+    """How to interpret the actions of such models: (key, value) of ``saved_models.KEYS``."""
 
     @classmethod
     def of(cls, text, trust=False, options=()):

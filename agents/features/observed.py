@@ -5,7 +5,7 @@ import numpy as np
 from gymnasium import spaces
 
 from snooker_env.planning import Positions
-from snooker_env.planning.learned.pot_view import SHOWN, with_pots
+from snooker_env.planning.learned.stroke_policy import SHOWN, with_pots
 from snooker_env.tasks import OBSERVATION_SIZE
 
 

@@ -16,8 +16,14 @@ import torch
 from snooker_env.game import N_BALLS
 from snooker_env.planning.learned import stroke_policy
 from snooker_env.planning.learned.dense_layers import relu
-from snooker_env.planning.learned.pot_view import POT_ENTRIES
-from snooker_env.planning.learned.stroke_policy import BALL_INPUTS, BLOCK, SCORED, STATE, StrokePolicy
+from snooker_env.planning.learned.stroke_policy import (
+    BALL_INPUTS,
+    BLOCK,
+    POT_ENTRIES,
+    SCORED,
+    STATE,
+    StrokePolicy,
+)
 from snooker_env.tasks import CHOICES, POTS
 
 from . import fused_kernels as kernels

@@ -13,7 +13,7 @@ import torch
 from snooker_env import Options
 from snooker_env.benchmark import count_shots
 from snooker_env.planning import Planner, action_masks
-from snooker_env.planning.learned.pot_view import with_pots
+from snooker_env.planning.learned.stroke_policy import with_pots
 
 TRIES = 48
 """Trials in each position: half the learner's best choices, half random; each twice if there are few."""

@@ -26,8 +26,7 @@ from snooker_env.planning.learned.frame_strokes import FrameStrokes
 from snooker_env.planning.learned.stroke_value import LOOKS, POINTS, SAMPLES, SIZE, StrokeValue
 from snooker_env.players import FRAMES, VISITS, Strokes
 from snooker_env.players.player import place_cue_balls
-from snooker_env.players.search_player import SearchPlayer, Tactician
-from snooker_env.players.stroke_value_player import StrokeValuePlayer
+from snooker_env.players.search_player import SearchPlayer, StrokeValuePlayer, Tactician
 from snooker_env.players.weights import STROKES, StrokeLayers, layers_of
 
 from .frame_self_play import play_frames

@@ -16,8 +16,7 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
 from snooker_env.game import N_BALLS
-from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
-from snooker_env.planning.learned.stroke_policy import LAYERS
+from snooker_env.planning.learned.stroke_policy import BALL_X, CUT, LAYERS, POT_ENTRIES, POT_X, SHOWN
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
 from .fused import FusedTable

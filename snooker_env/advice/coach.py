@@ -12,8 +12,8 @@ import numpy as np
 
 from .._lib.check import choice, refuse_what
 from .._lib.types import Floats, Ints
-from ..planning import Position, Positions, Proposals, Search, clear_paths, pots
-from ..planning.proposals import Asking, strokes_at
+from ..planning import Position, Positions, Search, clear_paths, pots
+from ..planning.proposals import Asking, Proposals, strokes_at
 from ..planning.sobol import sobol_points
 from ..planning.worth import lead_of, pass_after_miss
 from ..tasks.noise import LEVELS, NoiseLike

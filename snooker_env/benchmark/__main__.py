@@ -11,8 +11,8 @@ from .._lib.check import integer, refuse
 from .._lib.command import exit_code
 from .._lib.files import write_atomic
 from .._lib.text_tables import format_figure, text_table
-from ..players.model_options import add_model_options, options_of_words
 from ..players.program import AgentError
+from ..players.saved_models import add_model_options, options_of_words
 from ..progress import ticking
 from .agents import Agent, is_player_name, seat
 from .checking import faults

@@ -11,9 +11,9 @@ from .._lib.check import integer, number, refuse
 from ..players import Player
 from ..players import player as player_named
 from ..players.degenerate import is_degenerate
-from ..players.model_options import LEFT_OUT, check_model_options
 from ..players.program import ProgramPlayer
 from ..players.resolver import PROGRAM, is_name
+from ..players.saved_models import LEFT_OUT, check_model_options
 from ..players.seen import SeenPlayer
 from ..players.weights import levels
 from .schema import LABEL

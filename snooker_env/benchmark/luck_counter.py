@@ -31,7 +31,7 @@ class Luck:
         self.counts: Bools = np.ones(envs.num_envs, np.bool_)
         self._crew = Threads(envs.threads)
         self._tables, self._options, self._points = envs.tables, envs.options, score == "points"
-        self._expected: Expected = EXPECTED[score](envs.options)
+        self._expected: Expected = EXPECTED[score]
         if isinstance(envs.tables, Frames) and len(envs.tables.seats) > 1:
             agent, other = envs.tables.seats
             assert other.player is not None
@@ -66,7 +66,7 @@ class Luck:
         """Add the luck of the stroke that ``turn`` plays on each of the tables ``rows``."""
         rows = rows[self.counts[rows]]
         if len(rows) and (isinstance(self._tables, Frames) or not self._tables.rules.noise.silent):
-            self.sums[rows] += luck_of(self._tables, rows, turn, self._expected)
+            self.sums[rows] += luck_of(self._tables, rows, turn, self._expected, self._options)
 
 
 class WatchedOpponent:

@@ -14,8 +14,8 @@ from ..envs.vector import SnookerVectorEnv
 from ..planning import Positions, pots
 from ..players import FRAMES, VISITS, Player, ask_player, decision_seeds
 from ..players import player as player_named
+from ..players.search_player import StrokeValuePlayer
 from ..players.seen import SeenPlayer
-from ..players.stroke_value_player import StrokeValuePlayer
 from ..simulation import count_shots
 from .luck_counter import Decide, Luck
 from .tasks import HELD_OUT_SEED, Task

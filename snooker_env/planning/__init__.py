@@ -8,8 +8,8 @@ from .judges import FrameJudge, VisitJudge
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
-from .pot_geometry import Pots, clear_paths, pots, prospects_of
-from .proposals import Proposals, at_pots
+from .pot_geometry import clear_paths, pots, prospects_of
+from .proposals import at_pots
 from .search import Ranked, Search
 from .strokes import Strokes, action_masks
 
@@ -21,8 +21,6 @@ __all__ = [
     "Planner",
     "Position",
     "Positions",
-    "Pots",
-    "Proposals",
     "Ranked",
     "Search",
     "Strokes",

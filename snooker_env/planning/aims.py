@@ -41,13 +41,8 @@ def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int,
         phys, ratios = physics.packed_for(fidelity)[None], np.array([physics.end_mass_ratio])
     else:
         phys, ratios = rows_under(at.conditions, physics), at.conditions[:, END_MASS_RATIO].copy()
-    return (
-        phys,
-        ratios,
-        *fidelity,
-        physics.max_offset,
-        np.array(rails),
-    )  # kernels take arrays that can be written
+    over = np.array(rails)  # kernels take arrays that can be written
+    return phys, ratios, *fidelity, physics.max_offset, over
 
 
 def rows_under(conditions: Floats, physics: Physics) -> Floats:

@@ -2,7 +2,7 @@
 judged alike, by points, by the worth of what they leave to the next player (``worth``), and by the chance to win that follows."""
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -10,18 +10,29 @@ from .._lib.check import refuse_what
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
 from ..game.balls import CUE, SPOTS, BallOn
+from ..tasks.noise import Noise, Spread
+from ..tasks.options import Rules
 from ..tasks.pot_chance import RULE_OF_THUMB, SURE
 from ..tasks.threads import Threads, processors
 from . import worth as worths
+from .aims import Dynamics
 from .planner import Planner, RulesLike, options_in
 from .positions import Positions
 from .pot_geometry import clear_paths, prospects_of
 from .proposals import Proposals, Propose, at_balls, over_cushions, safeties
-from .search import BUDGET, Judge, Plan, Proposed, Search
 from .stroke_columns import COLUMNS
 from .trials import FrameTrials, turn_to_striker
 from .worth import LAST, Chance, Worth, lead_of, left_of, pass_after_miss
 
+
+class Plan(NamedTuple):
+    """How a budget is spent: ``looks`` at strokes of each kind, and (strokes, further samples) of each round."""
+
+    looks: tuple[int, ...]
+    rounds: tuple[tuple[int, int], ...]
+
+
+BUDGET = 120  # simulated shots of a decision, by default
 SCHEDULES = (
     (30, 16, ((4, 2), (2, 3))),
     (60, 32, ((6, 2), (3, 5))),
@@ -33,7 +44,8 @@ SCHEDULES = (
 LEFT = 0.5  # share of a position's value for the opponent that counts
 FOUL = 20.0  # what a foul costs beside its penalty [points]: the balls replaced, or a free ball
 Value: TypeAlias = Callable[[Positions], Floats | Singles]  # what strokes have left is worth [points]
-WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)  # for positions without a likely pot
+Generators: TypeAlias = tuple[Propose, ...]
+WITHOUT_POTS: Generators = (at_balls, over_cushions)  # for positions without a likely pot
 Foresee: TypeAlias = Callable[[Positions, Ints, Floats, int], Floats]
 """What strokes (m, 5) without a pot in ``at[rows]`` promise under so many errors, without a simulated shot: (m,) [points]."""
 SAFETY = 1  # the kind of safeties
@@ -57,7 +69,39 @@ def schedule(budget: int) -> Plan:
     return Plan((budget,), ())
 
 
-class VisitJudge(Judge):
+class Proposed(NamedTuple):
+    """``Proposals`` for n positions, the kind of each stroke (n, m), and whether a position has some without a pot (n,)."""
+
+    strokes: Floats
+    chances: Floats
+    kinds: Ints
+    safe: Bools
+
+
+class _Judge:
+    """What a search asks of a game: how to spend the budget and where (``plans``), which strokes to try (``propose``), what k of
+    them are worth without error, (k, v), and which to go on with (``look``), and under errors in standard deviations (``sample``)."""
+
+    def __init__(self, rules: Rules):
+        self.rules: Rules = rules
+        self.noise: Noise = rules.noise
+        self.spread: Spread = rules.noise.spread(rules.physics)
+        self.dynamics: Dynamics = Dynamics.of(rules)
+
+    def groups(self, kinds: Ints, looks: Floats) -> Ints:
+        """Of which groups of strokes the best are sampled, (n, m), by their kinds and looks (n, m, v)."""
+        return kinds
+
+    def score(self, values: Floats) -> Floats:
+        """What such values of n positions, (n, m, v), are compared by: (n, m)."""
+        return values[..., 0]
+
+    def figures(self, values: Floats) -> tuple[Floats, Floats]:
+        """The scores and the points (n, m) of a ranking."""
+        return values[..., 0], values[..., 0]
+
+
+class VisitJudge(_Judge):
     """Judges strokes by the points of a visit.
 
     Parameters
@@ -97,27 +141,26 @@ class VisitJudge(Judge):
         rails, threads = self.dynamics.rails, self.planner.threads
         return prospects_of(at, self.spread, constants, threads=threads, rails=rails)[0]
 
-    def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
+    def plans(self, budget: int, propose: Generators, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """One for all positions; without execution errors the first look takes the whole budget."""
-        plan = Plan((search.budget,), ()) if self.noise.silent else schedule(search.budget)
+        plan = Plan((budget,), ()) if self.noise.silent else schedule(budget)
         return [(plan, np.arange(len(at)))]
 
-    def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
+    def propose(self, generators: Generators, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
         """Pots; where there are none, or a stroke need only be fair, strokes at balls and over cushions, too."""
         (m,), at = plan.looks, at.as_visits()
-        strokes, chances, kinds = self._share(search, search.propose, at, m, seeds)
+        strokes, chances, kinds = self._share(generators, at, m, seeds)
         doubt = chances.max(axis=1) <= (1.0 if self.legal else 0.0)
         if doubt.any():
             strokes, chances, kinds = strokes.copy(), chances.copy(), kinds.copy()
-            shared = self._share(search, (*search.propose, *WITHOUT_POTS), at[doubt], m, seeds[doubt])
+            every = *generators, *WITHOUT_POTS
+            shared = self._share(every, at[doubt], m, seeds[doubt])
             strokes[doubt], chances[doubt], kinds[doubt] = shared
         return Proposed(strokes, chances, kinds, doubt | kinds.any(axis=1))
 
-    def _share(
-        self, search: Search, generators: tuple[Propose, ...], at: Positions, m: int, seeds: Ints
-    ) -> tuple[Floats, Floats, Ints]:
+    def _share(self, some: Generators, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints]:
         """Strokes of the generators that have any, in turn; chances; which generator each is of."""
-        made = [Proposals(*generate(search, at, m, seeds)) for generate in generators]
+        made = [Proposals(*generate(self, at, m, seeds)) for generate in some]
         if len(made) == 1:
             return made[0].strokes, made[0].chances, np.zeros((len(at), m), np.int64)
         has = np.stack([each.chances.any(axis=1) for each in made])
@@ -181,7 +224,7 @@ def scale(plan: Plan, share: float) -> Plan:
     return Plan(looks, tuple(rounds))
 
 
-class FrameJudge(Judge):
+class FrameJudge(_Judge):
     """Judges strokes by the positions of a frame that they leave.
 
     Parameters
@@ -217,33 +260,32 @@ class FrameJudge(Judge):
         self.chance: Chance | None = chance
         self.foresee: Foresee | None = foresee
 
-    def plans(self, search: Search, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
+    def plans(self, budget: int, propose: Generators, at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
         """One where a likely pot makes the decision easy, one elsewhere."""
         if not at.of_frames:
             raise refuse_what("positions", "those of visits", "must be of frames, or judged by a VisitJudge")
-        if len(search.propose) != 1:
-            many = f"{len(search.propose)} generators"
+        if len(propose) != 1:
+            many = f"{len(propose)} generators"
             raise refuse_what("propose", many, "must be one: of strokes at pots")
-        easy, hard = (scale(plan, search.budget / BUDGET) for plan in PLANS)
+        easy, hard = (scale(plan, budget / BUDGET) for plan in PLANS)
         if self.noise.silent:
             easy, hard = easy._replace(rounds=()), hard._replace(rounds=())
         if not len(at):
             return []
-        (propose,) = search.propose
-        pots = propose(search, at.as_visits(), hard.looks[0], seeds)
+        pots = propose[0](self, at.as_visits(), hard.looks[0], seeds)
         # a striker who would need snookers at the next visit must see more than pots
         likely = (pots.chances.max(axis=1) >= EASY) & (lead_of(at) + left_of(pass_after_miss(at)) >= 0.0)
         return [(easy, np.flatnonzero(likely)), (hard, np.flatnonzero(~likely))]
 
-    def propose(self, search: Search, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
+    def propose(self, generators: Generators, at: Positions, seeds: Ints, plan: Plan) -> Proposed:
         """So many of each kind as the plan says."""
         made, visits = [], at.as_visits()
-        generators = (*search.propose, safeties, at_balls, over_cushions)
-        for kind, (generate, many) in enumerate(zip(generators, plan.looks, strict=True)):
+        every = *generators, safeties, at_balls, over_cushions
+        for kind, (generate, many) in enumerate(zip(every, plan.looks, strict=True)):
             if not many:
                 continue
             more = FORESEEN if kind == SAFETY and self.foresee is not None else 1
-            strokes, chances = generate(search, visits, more * many, seeds)
+            strokes, chances = generate(self, visits, more * many, seeds)
             if kind == SAFETY and self.foresee is not None:
                 strokes, chances = self._promising(self.foresee, at, Proposals(strokes, chances), many)
             made.append((strokes, chances, np.full(chances.shape, kind)))
@@ -371,3 +413,6 @@ class FrameJudge(Judge):
         best = np.take_along_axis(worth, self._one(worth).argmax(axis=1)[:, None, None], 1)
         best = np.where(np.isfinite(best), best, 1e9)  # nothing but called misses: they are not bounded
         return lower(out, again + called * best)
+
+
+Judge: TypeAlias = VisitJudge | FrameJudge

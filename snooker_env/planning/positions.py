@@ -173,10 +173,6 @@ class Positions:
         """Whether these are positions of frames, not of visits, a bool."""
         return self.game.shape[1] == columns.COLUMNS
 
-    def _of_frame(self, *which: int) -> Ints:
-        """The columns of frames, int64 (m, k); of visits all 0."""
-        return self.game[:, which] if self.of_frames else np.zeros((len(self), len(which)), np.int64)
-
     free_ball: Bools = _flag(columns.FREE_BALL, "Whether the striker has a free ball")
     anywhere: Bools = _flag(columns.ANYWHERE, "Whether the cue ball in hand may be placed anywhere")
     choice: Bools = _flag(columns.PHASE, "Whether the striker may choose what follows a foul", columns.CHOICE)
@@ -189,12 +185,8 @@ class Positions:
     @property
     def scores(self) -> Ints:
         """Scores of the striker and of the opponent, int64 (m, 2); in visits 0."""
-        return self._of_frame(columns.SCORE_0, columns.SCORE_1)
-
-    @property
-    def frames_won(self) -> Ints:
-        """Frames of the match that the striker and the opponent have won, int64 (m, 2); in visits 0."""
-        return self._of_frame(columns.FRAMES_0, columns.FRAMES_1)
+        which = [columns.SCORE_0, columns.SCORE_1]
+        return self.game[:, which] if self.of_frames else np.zeros((len(self), 2), np.int64)
 
     @property
     def ball_on(self) -> Ints:
@@ -286,12 +278,8 @@ def check_rails(rails: Floats) -> Floats:
 
 
 def seeds_of(seeds: Integers, n: int) -> Ints:
-    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
-    a = np.asarray(seeds)
-    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        allowed = f"must be {n} integers, one for each position"
-        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", allowed)
-    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+    """The last 32 bits of ``seeds``, one for each of n positions: int64 (n,)."""
+    return integers("seeds", seeds, -(2**63), 2**64 - 1, n) & 0xFFFFFFFF
 
 
 def check_has_stroke(at: Positions, rows: Ints, table: Table, radius: float) -> None:

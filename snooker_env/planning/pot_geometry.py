@@ -26,25 +26,7 @@ WORTH_A_THREAD = 128  # smallest number of positions for which another thread is
 
 
 class Pots(NamedTuple):
-    """The direct pots of m positions, widest tolerance first, as returned by ``pots``.
-
-    Attributes
-    ----------
-    ball, pocket : numpy.ndarray
-        int64 (m, most). Id of the ball to pot, index into ``snooker_env.POCKETS``; -1 beyond the last pot.
-    ghost : numpy.ndarray
-        float64 (m, most, 2). Centre of the cue ball [m] when it touches the object ball.
-    cut, tolerance : numpy.ndarray
-        float64 (m, most). Angle between the paths of both balls [rad], 0 for a straight pot; approximate
-        largest error of the aim [rad] with which the ball is still potted.
-
-    Examples
-    --------
-    >>> from snooker_env.planning import Position, pots
-    >>> direct = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), most=1)
-    >>> direct.ghost[0, 0].round(4).tolist(), direct.cut[0, 0].round(3).item()
-    ([-0.0495, 1.443], 1.265)
-    """
+    """The direct pots of m positions, as returned by ``pots``."""
 
     ball: Ints
     pocket: Ints
@@ -75,7 +57,10 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     Returns
     -------
     Pots
-        Arrays with shape (m, most), widest tolerance first.
+        Arrays, widest tolerance first: ``ball``, ``pocket``, int64 (m, most), id of the ball and index into
+        ``snooker_env.POCKETS``, -1 beyond the last pot; ``ghost``, (m, most, 2), centre of the cue ball [m] when it touches
+        the ball; ``cut``, (m, most), angle between the paths of both balls [rad]; ``tolerance``, (m, most), approximate
+        largest error of the aim [rad] with which the ball is still potted.
 
     Examples
     --------

@@ -1,9 +1,5 @@
-"""Which strokes are worth a look? Generators: each makes m continuous strokes for each of n positions, of n seeds.
-
-``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to (chance x nearness)^4 x worth. Its
-strokes are consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its
-side. ``at_balls``, ``safeties``: evenly to the places where a ball on is met first (``tasks.windows``). ``over_cushions``: about
-the escapes of ``tasks.escapes``."""
+"""Which strokes are worth a look? Generators: each makes m continuous strokes for each of n positions, of n seeds. At pots their
+numbers go with (chance x nearness)^4 x worth; their speeds, heights and sides are Sobol points (docs/agents/planner.md)."""
 
 from collections.abc import Callable
 from math import atan2, exp, hypot, log, pi
@@ -43,35 +39,21 @@ ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 
 
 class Asking(Protocol):
-    """What a generator may ask of the search that calls it."""
+    """What a generator may ask of the judge that calls it."""
 
     spread: Spread
     dynamics: Dynamics
 
 
 class Proposals(NamedTuple):
-    """m strokes for each of n positions, which a ``Search`` then tries.
-
-    Attributes
-    ----------
-    strokes, chances : numpy.ndarray
-        float64 (n, m, 5), strokes in SI, see ``Planner``; float64 (n, m), chance of each one's pot by its width, 1 without a
-        pot, 0 for no stroke.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.planning import Proposals
-    >>> Proposals(np.zeros((2, 5, 5)), np.ones((2, 5))).chances.shape
-    (2, 5)
-    """
+    """Strokes (n, m, 5) in SI, and the chance (n, m) of each one's pot by its width: 1 without a pot, 0 for no stroke."""
 
     strokes: Floats
     chances: Floats
 
 
 Propose: TypeAlias = Callable[[Asking, Positions, int, Ints], Proposals]
-"""A generator: proposals of m strokes for each position, of the search, the n positions, m and seeds (n,)."""
+"""A generator: proposals of m strokes for each position, for the judge, the n positions, m and seeds (n,)."""
 
 
 @kernel
@@ -253,18 +235,19 @@ def _escapes(balls, seeds, law, strokes, chances):
 _SPREAD = np.empty((0, 0), np.int64)
 
 
-def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
+def at_pots(judge: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Generate strokes spread over all direct pots, speeds and tips, for a ``Search``.
 
     Parameters
     ----------
-    search, at, m, seeds
-        The search, whose ``spread`` and ``dynamics`` count; n ``Positions``; the number of strokes for each; int64 (n,).
+    judge, at, m, seeds
+        The judge, whose ``spread`` and ``dynamics`` count; n ``Positions``; the number of strokes for each; int64 (n,).
 
     Returns
     -------
     Proposals
-        The strokes; none where there is no direct pot.
+        ``strokes``, float64 (n, m, 5), in SI, see ``Planner``; ``chances``, float64 (n, m), of each one's pot by its width; 0,
+        for no stroke, where there is no direct pot.
 
     Examples
     --------
@@ -273,7 +256,7 @@ def at_pots(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals
     >>> at_pots(VisitJudge({}), at, 5, [7]).strokes.shape
     (1, 5, 5)
     """
-    return _propose_each(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, search.spread, search.dynamics)
+    return _propose_each(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, judge.spread, judge.dynamics)
 
 
 def strokes_at(
@@ -299,22 +282,22 @@ def _balls(at):
     return at.positions, at.on_table, at.game
 
 
-def at_balls(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
+def at_balls(judge: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Strokes at the balls on that the cue ball can strike; none where no ball on is seen."""
-    return _of_visits(_contacts, search, at, m, seeds, False)
+    return _of_visits(_contacts, judge, at, m, seeds, False)
 
 
-def safeties(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
+def safeties(judge: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Such strokes of all speeds, every other one thin; before a break-off the first one is the built-in break-off."""
-    return _of_visits(_contacts, search, at, m, seeds, True)
+    return _of_visits(_contacts, judge, at, m, seeds, True)
 
 
-def over_cushions(search: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
+def over_cushions(judge: Asking, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Escapes over cushions, where hardly anything of a ball on is seen; none in other positions."""
-    return _of_visits(_escapes, search, at, m, seeds)
+    return _of_visits(_escapes, judge, at, m, seeds)
 
 
-def _of_visits(kernel, search, at, m, seeds, *more):
+def _of_visits(kernel, judge, at, m, seeds, *more):
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    kernel(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *more, *made)
+    kernel(_balls(at), np.asarray(seeds, np.int64), law_of(judge.dynamics, at), *more, *made)
     return made

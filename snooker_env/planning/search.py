@@ -12,17 +12,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .._lib.check import integer, refuse_what
-from .._lib.types import Bools, Floats, Integers, Ints
-from ..tasks.noise import Noise, Spread
-from ..tasks.options import Rules
-from .aims import Dynamics
+from .._lib.types import Floats, Integers, Ints
+from .judges import BUDGET, Judge, Plan, Proposed
 from .positions import Positions, PositionsLike, check_has_stroke, seeds_of
 from .proposals import Propose, at_pots
 from .sobol import DIMENSIONS, normal_points
 from .strokes import Strokes
 
 PRIOR = 1.0  # number of samples that the look without error counts as
-BUDGET, MOST = 120, 10**7  # simulated shots of a decision, by default and at most
+MOST = 10**7  # simulated shots of a decision
 
 
 class Ranked(NamedTuple):
@@ -56,62 +54,6 @@ class Ranked(NamedTuple):
     kinds: Ints = np.empty(0, np.int64)
 
 
-class Plan(NamedTuple):
-    """How a budget is spent: ``looks`` at strokes of each kind, and (strokes, further samples) of each round."""
-
-    looks: tuple[int, ...]
-    rounds: tuple[tuple[int, int], ...]
-
-
-class Proposed(NamedTuple):
-    """``Proposals`` for n positions, the kind of each stroke (n, m), and whether a position has some without a pot (n,)."""
-
-    strokes: Floats
-    chances: Floats
-    kinds: Ints
-    safe: Bools
-
-
-class Judge:
-    """What a search asks of a game: how to spend the budget, what to try, and what it is worth."""
-
-    least: int  # smallest budget of a decision
-
-    def __init__(self, rules: Rules):
-        self.rules: Rules = rules
-        self.noise: Noise = rules.noise
-        self.spread: Spread = rules.noise.spread(rules.physics)
-        self.dynamics: Dynamics = Dynamics.of(rules)
-
-    def plans(self, search: "Search", at: Positions, seeds: Ints) -> list[tuple[Plan, Ints]]:
-        """How to spend the budget, and in which of the positions."""
-        raise NotImplementedError
-
-    def propose(self, search: "Search", at: Positions, seeds: Ints, plan: Plan) -> Proposed:
-        """The strokes to try in n positions."""
-        raise NotImplementedError
-
-    def look(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints) -> tuple[Floats, Bools]:
-        """What proposed strokes are worth without error, (k, v), and which of them to go on with (k,)."""
-        raise NotImplementedError
-
-    def sample(self, at: Positions, proposed: Proposed, rows: Ints, picks: Ints, errors: Floats) -> Floats:
-        """What they are worth under errors (k, 5) in standard deviations: (k, v)."""
-        raise NotImplementedError
-
-    def groups(self, kinds: Ints, looks: Floats) -> Ints:
-        """Of which groups of strokes the best are sampled, (n, m), by their kinds and looks (n, m, v)."""
-        return kinds
-
-    def score(self, values: Floats) -> Floats:
-        """What such values of n positions, (n, m, v), are compared by: (n, m)."""
-        return values[..., 0]
-
-    def figures(self, values: Floats) -> tuple[Floats, Floats]:
-        """The scores and the points (n, m) of a ranking."""
-        return values[..., 0], values[..., 0]
-
-
 class Search:
     """Searches for the best stroke with a number of simulated shots.
 
@@ -121,7 +63,7 @@ class Search:
         What is played where, and what a stroke is worth; simulated shots of a decision: at most in visits, at least 8; on
         average in frames, at least 30.
     propose : callable or sequence of callable, optional
-        Generators of strokes at pots, ``propose(search, at, m, seeds)`` -> ``Proposals``; in frames one. Default: ``at_pots``.
+        Generators of strokes at pots, which return what ``at_pots(judge, at, m, seeds)`` does, the default; in frames one.
 
     Examples
     --------
@@ -138,8 +80,6 @@ class Search:
         self.judge: Judge = judge
         self.budget: int = integer("budget", budget, judge.least, MOST)
         self.propose: tuple[Propose, ...] = (propose,) if callable(propose) else tuple(propose)
-        self.spread: Spread = judge.spread  # this and the dynamics are what generators ask for
-        self.dynamics: Dynamics = judge.dynamics
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
         """Try strokes in n positions and return them ``Ranked``: the first one of each is to be played.
@@ -150,7 +90,7 @@ class Search:
         at, keys = at.known_to(rules), seeds_of(seeds, len(at))
         check_has_stroke(at.as_visits(), np.arange(len(at)), rules.table, rules.physics.R)
         ranked: dict[int, Ranked] = {}
-        for plan, rows in self.judge.plans(self, at, keys):
+        for plan, rows in self.judge.plans(self.budget, self.propose, at, keys):
             if len(rows):
                 ranked |= zip(rows.tolist(), self._rank(at[rows], keys[rows], plan), strict=True)
         return [ranked[k] for k in range(len(at))]
@@ -158,7 +98,7 @@ class Search:
     def _rank(self, at: Positions, seeds: Ints, plan: Plan) -> list[Ranked]:
         """The rankings of positions in which the budget is spent alike."""
         judge, every = self.judge, np.arange(len(at))[:, None]
-        proposed = judge.propose(self, at, seeds, plan)
+        proposed = judge.propose(self.propose, at, seeds, plan)
         strokes, chances, kinds, safe = proposed
         rows, picks = np.nonzero(chances > 0.0)
         values, keep = judge.look(at, proposed, rows, picks)

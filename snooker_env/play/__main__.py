@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from .._lib.check import integer
 from .._lib.command import stop_with_reader
-from ..players.model_options import add_model_options, options_of_words
+from ..players.saved_models import add_model_options, options_of_words
 
 if TYPE_CHECKING:
     from .server import PlayServer

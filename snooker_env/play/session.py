@@ -224,7 +224,7 @@ class Session:
             each, crew = actions[rows], Threads(1)
             copies.turn(lambda which, b: copies.prepare(which, each, b, striker), out, crew)
 
-        first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win(self.options_with(errors)))
+        first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win, self.options_with(errors))
         return float(first[0] if striker == 0 else -first[0])
 
     def _hand_back(self):

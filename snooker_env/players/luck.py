@@ -26,7 +26,7 @@ from .weights import learned_at, level_for
 DRAWS = 16  # fresh errors of each stroke
 BATCH = 8192  # tables that are played at once
 _KEYS = 0x6C75636B  # of the fresh errors: no player draws with this seed
-Expected: TypeAlias = Callable[[Tables, StepOutput], Floats]
+Expected: TypeAlias = Callable[[Tables, StepOutput, Options], Floats]
 """What the episodes on n tables that have just taken a stroke have brought and are expected to bring: (n,)."""
 Turn: TypeAlias = Callable[[Tables, Ints, StepOutput], None]
 """Plays a stroke on each of n tables, which are copies of the rows (n,) of others."""
@@ -40,51 +40,40 @@ def value_of(options: Options) -> LearnedValue:
     return LearnedValue(learned.value, rules.noise.spread(rules.physics), processors())
 
 
-def expect_points(options: Options) -> Expected:
+def expect_points(tables: Tables, out: StepOutput, options: Options) -> Floats:
     """Of visits: points, and the learned value of what is left while they go on."""
-    value = value_of(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        points, on = tables.game[:, POINTS].astype(np.float64), np.flatnonzero(tables.game[:, OVER] == 0)
-        if len(on):
-            points[on] += value(of_tables(tables)[on])
-        return points
-
-    return expected
+    points, on = tables.game[:, POINTS].astype(np.float64), np.flatnonzero(tables.game[:, OVER] == 0)
+    if len(on):
+        points[on] += value_of(options)(of_tables(tables)[on])
+    return points
 
 
-def expect_legal(options: Options) -> Expected:
+def expect_legal(tables: Tables, out: StepOutput, options: Options) -> Floats:
     """Of one stroke: 1 unless it is a foul."""
-    return lambda tables, out: (out.counts[:, I_FOULS] == 0).astype(np.float64)
+    return (out.counts[:, I_FOULS] == 0).astype(np.float64)
 
 
-def expect_lead(options: Options) -> Expected:
+def expect_lead(tables: Tables, out: StepOutput, options: Options) -> Floats:
     """Of a stroke and a visit of a frame: the lead, and the learned value of the visit that follows to who plays it."""
-    value = value_of(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        assert isinstance(tables, Frames)
-        game, lead = tables.game, tables.lead().astype(np.float64)
-        ended = (game[:, OVER] != 0) | ((game[:, STRIKER] == AGENT) & (game[:, PHASE] != CHOICE))
-        on = np.flatnonzero(~ended)
-        if len(on):
-            sign = np.where(game[on, STRIKER] == AGENT, 1.0, -1.0)
-            lead[on] += sign * value(of_tables(tables)[on].as_visits())
-        return lead
-
-    return expected
+    assert isinstance(tables, Frames)
+    game, lead = tables.game, tables.lead().astype(np.float64)
+    ended = (game[:, OVER] != 0) | ((game[:, STRIKER] == AGENT) & (game[:, PHASE] != CHOICE))
+    on = np.flatnonzero(~ended)
+    if len(on):
+        sign = np.where(game[on, STRIKER] == AGENT, 1.0, -1.0)
+        lead[on] += sign * value_of(options)(of_tables(tables)[on].as_visits())
+    return lead
 
 
 @lru_cache(maxsize=16)
-def expect_win(options: Options) -> Expected:
+def _tactician(options: Options) -> Tactician:
+    return Tactician().at(options)
+
+
+def expect_win(tables: Tables, out: StepOutput, options: Options) -> Floats:
     """Of frames: the agent's chance to win, by the tactician."""
-    judge = Tactician().at(options)
-
-    def expected(tables: Tables, out: StepOutput) -> Floats:
-        theirs = judge.chance_to_win(of_tables(tables))
-        return np.where(tables.game[:, STRIKER] == AGENT, theirs, 1.0 - theirs)
-
-    return expected
+    theirs = _tactician(options).chance_to_win(of_tables(tables))
+    return np.where(tables.game[:, STRIKER] == AGENT, theirs, 1.0 - theirs)
 
 
 EXPECTED = {"points": expect_points, "legal": expect_legal, "lead": expect_lead, "won": expect_win}
@@ -108,7 +97,7 @@ def mean_of_starts(options: Options) -> float | None:
     return float(value_of(options)(starts).mean(dtype=np.float64))
 
 
-def luck_of(tables: Tables, rows: Ints, turn: Turn, expected: Expected) -> Floats:
+def luck_of(tables: Tables, rows: Ints, turn: Turn, expected: Expected, options: Options) -> Floats:
     """The luck (m,) of the strokes that ``turn`` plays on the tables ``rows`` (m,), which are not changed."""
     lucks, each = np.zeros(len(rows)), 1 + DRAWS
     for first in range(0, len(rows), BATCH // each):
@@ -118,7 +107,7 @@ def luck_of(tables: Tables, rows: Ints, turn: Turn, expected: Expected) -> Float
         copies.streams.reshape(-1, each, 2)[:, 1:] = fresh_streams(tables.streams[some])
         out = copies.output()
         turn(copies, again, out)
-        brought = expected(copies, out).reshape(-1, each)
+        brought = expected(copies, out, options).reshape(-1, each)
         lucks[first : first + len(some)] = brought[:, 0] - brought[:, 1:].mean(axis=1)
     return lucks
 

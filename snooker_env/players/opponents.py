@@ -17,11 +17,10 @@ from ..tasks.frames import Asked, Frames, Opponent
 from ..tasks.options import OPPONENTS, Options
 from ..tasks.tables import Crew, uniform
 from .choices import GhostBall
-from .model_options import of_others
 from .player import Player, Strokes
 from .resolver import PROGRAM
 from .resolver import player as player_of
-from .saved_models import FittingModel, SavedNetwork
+from .saved_models import FittingModel, SavedNetwork, of_others
 from .seen import SeenPlayer
 
 _KINDS = (ValueError, TypeError, ImportError)

@@ -7,8 +7,9 @@ import os
 import queue
 import shlex
 import subprocess
-import threading
 import time
+from _thread import start_new_thread
+from concurrent.futures import Future, wait
 from typing import Any
 
 import numpy as np
@@ -132,47 +133,33 @@ class _Lines:
         self.command, self.timeout, self._words = command, timeout, words
         self._process: Any = None
 
-    def _start(self):
-        try:
-            self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        except OSError as error:
-            raise self.failure(f"cannot be started: {error}") from None
-        self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
-        self._states: queue.Queue[bytes] = queue.Queue()
-        self._taken = threading.Event()  # the program has read all that was written
-        self._taken.set()
-        self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
-        self._writer = threading.Thread(target=self._write, args=(self._process.stdin,), daemon=True)
-        self._reader.start()
-        self._writer.start()
-
     def ask(self, line: bytes) -> bytes:
         if self._process is None:
-            self._start()
-        until = time.monotonic() + self.timeout
+            try:
+                self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+            except OSError as error:
+                raise self.failure(f"cannot be started: {error}") from None
+            self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
+            start_new_thread(self._read, (self._process, self._answers))
+        unasked, until = not self._answers.empty(), time.monotonic() + self.timeout
+        self._read_all: Future[bool] = Future()  # whether the program has read all that was written
+        start_new_thread(_write, (self._process.stdin.fileno(), line, self._read_all))
         try:
-            answer = self._answers.get_nowait()
+            answer = self._answers.get(timeout=self.timeout)
         except queue.Empty:
-            self._taken.clear()
-            self._states.put(line)
-            try:
-                answer = self._answers.get(timeout=self.timeout)
-            except queue.Empty:
-                raise self.failure(f"gave no stroke within {self.timeout:g} s") from None
-            if answer and not self._taken.wait(max(0.0, until - time.monotonic())):
-                raise self.failure(f"did not read its state within {self.timeout:g} s") from None
-        else:
-            if answer:
-                raise self.failure(f"answered {_short(answer)} without a state: one line for each")
-        if len(answer) > LONGEST:
-            raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
+            raise self.failure(f"gave no stroke within {self.timeout:g} s") from None
         if not answer:
-            process: Any = self._process
             try:
-                code = process.wait(2.0)
+                code = self._process.wait(2.0)
             except subprocess.TimeoutExpired:
                 raise self.failure("closed its output") from None
             raise self.failure(f"ended with exit code {code} instead of a stroke")
+        if unasked:
+            raise self.failure(f"answered {_short(answer)} without a state: one line for each")
+        if len(answer) > LONGEST:
+            raise self.failure(f"answered a line of more than {LONGEST:,} bytes")
+        if not (wait([self._read_all], until - time.monotonic()).done and self._read_all.result()):
+            raise self.failure(f"did not read its state within {self.timeout:g} s")
         return answer
 
     def failure(self, what: str) -> AgentError:
@@ -182,39 +169,32 @@ class _Lines:
         process, self._process = self._process, None
         if process is None:
             return
-        if not self._taken.is_set():  # it does not read: the end of its input would not reach it
+        if not self._read_all.done():  # it does not read: the end of its input would not reach it
             process.kill()
-        self._states.put(b"")
-        self._writer.join(2.0)
-        if not self._writer.is_alive():
-            with contextlib.suppress(OSError):  # it has gone already
-                process.stdin.close()
+        if wait([self._read_all], 2.0).done:
+            process.stdin.close()
         try:
             process.wait(2.0)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-        until = time.monotonic() + 2.0
-        while self._reader.is_alive() and time.monotonic() < until:
-            with contextlib.suppress(queue.Empty):  # what it still had to say
-                self._answers.get(timeout=0.02)
-        if not self._reader.is_alive():  # a child of the program may hold its output open
-            process.stdout.close()
+        with contextlib.suppress(queue.Empty):  # a reader that waits for room goes on, and ends
+            self._answers.get_nowait()
 
-    def _read(self, output):
-        line = b" "
-        while line and len(line) <= LONGEST:
-            line = output.readline(LONGEST + 1)
-            self._answers.put(line)
+    def _read(self, process, answers):
+        with process.stdout:
+            line = b" "
+            while line and len(line) <= LONGEST and process is self._process:
+                line = process.stdout.readline(LONGEST + 1)
+                answers.put(line)
 
-    def _write(self, input_):
-        """Write states, in a thread of its own: a program that does not read stops whoever writes to it."""
-        pipe = input_.fileno()
-        while text := self._states.get():
-            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
-                while text:
-                    text = text[os.write(pipe, text) :]
-                self._taken.set()
+
+def _write(pipe, text, read_all):
+    """Write a text, in a thread of its own: a program that does not read stops whoever writes to it."""
+    with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
+        while text:
+            text = text[os.write(pipe, text) :]
+    read_all.set_result(not text)
 
 
 def _one_stroke(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:

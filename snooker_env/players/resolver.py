@@ -12,11 +12,10 @@ from .._lib.check import refuse, refuse_what, truth
 from ..planning import VisitJudge
 from ..planning.search import BUDGET, MOST
 from .choices import GhostBall, Random
-from .model_options import LEFT_OUT, check_model_options, of_others
 from .player import Player
 from .program import ProgramPlayer
-from .search_player import SearchPlayer, Tactician
-from .stroke_value_player import StrokeValuePlayer
+from .saved_models import LEFT_OUT, check_model_options, of_others
+from .search_player import SearchPlayer, StrokeValuePlayer, Tactician
 
 GROUP = "snooker_env.players"  # entry points for players: NAME = MODULE:MAKER, called without arguments
 READERS = "snooker_env.models"  # entry points that read models, called with a path; None if it is not theirs
@@ -128,7 +127,7 @@ def _built_in(name: str) -> Player | None:
     if name in (Random.name, GhostBall.name):
         return Random() if name == Random.name else GhostBall()
     if name == "strokes":
-        from .menu_network import MenuPlayer
+        from .seen import MenuPlayer
 
         return MenuPlayer()
     form = _SEARCHING.fullmatch(name)

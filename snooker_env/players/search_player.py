@@ -1,8 +1,9 @@
 """How do players search? ``search`` judges by the rule of thumb and looks at strokes spread over the pots, ``planner`` by the
 learned value at those that the learned policy proposes; ``best_pot`` plays the likeliest pot. The ``tactician`` searches frames
-for pots, safeties and escapes, and takes all decisions of a frame by one worth for both players."""
+for pots, safeties and escapes, and takes all decisions of a frame by one worth for both players. ``stroke_value`` simulates no
+shot: in visits it plays the pot, in frames the stroke, that its networks say is worth most; without one as ``ghost_ball``."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,11 +13,12 @@ from ..game import frame_columns as columns
 from ..planning import FrameJudge, Positions, Search, VisitJudge, at_pots, processors
 from ..planning.aims import Dynamics
 from ..planning.learned.dense_layers import Weights
-from ..planning.learned.frame_strokes import Foresight, FrameStrokes
+from ..planning.learned.frame_strokes import FOULS, Foresight, FrameStrokes
 from ..planning.learned.learned_worth import LearnedValue, LearnedWorth
 from ..planning.learned.stroke_policy import PolicyProposals
+from ..planning.learned.stroke_value import LOOKS, Candidates, StrokeValue
 from ..planning.positions import PositionsLike, seeds_of
-from ..planning.proposals import Propose
+from ..planning.proposals import Propose, over_cushions
 from ..planning.search import BUDGET, MOST
 from ..planning.stroke_columns import COLUMNS
 from ..planning.worth import Chance, apply_decision, best_places, breaks_off, decide, lead_of, left_of
@@ -24,11 +26,13 @@ from ..tasks.declarations import CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 from .choices import GhostBall
 from .player import BoundPlayer, Ranked, Strokes, place_cue_balls
-from .weights import Learned, learned_at, learned_worth, level_for
+from .seen import begun
+from .weights import Learned, StrokeLayers, learned_at, learned_strokes, learned_worth, level_for
 
 KINDS = ("best_pot", "search", "planner")
 RANKED = 40  # most strokes of a ranking
 LOST = 0.01  # the chance to win below which it concedes a frame in which it needs snookers, where it may
+LIKELY = 0.75  # share of the predicted errors under which a stroke at a ball must be fair to be preferred
 _IDLE = (1.0, 0.0, 0.0, 0.0, 0.0)  # the stroke of a player who has none
 
 
@@ -199,3 +203,76 @@ class Tactician(FramePlayer):
         won = at.game[:, columns.WINNER] == 0
         chances = judge.chances(lead_of(at), gains, at)
         return np.where(over, won, chances)
+
+
+class StrokeValuePlayer(FramePlayer):
+    """The best stroke of a ``StrokeValue``, in frames of a ``FrameStrokes``, with the layers ``learned``."""
+
+    name = "stroke_value"
+    search: FrameStrokes
+    values: StrokeValue
+
+    def __init__(self, learned: StrokeLayers | None = None):
+        self._given = learned
+
+    def _bind(self, options: Options) -> None:
+        rules, level = options.rules, level_for(options.rules.noise)
+        learned, self._plain = learned_at(level), GhostBall().at(options)
+        layers = learned_strokes() if self._given is None else self._given
+        spread = rules.noise.spread(rules.physics)
+        # one of the value's networks says almost as much as all, in a quarter of the time
+        value, worth = LearnedValue(learned.value[:1], spread), LearnedValue(learned.value, spread)
+        self.values = StrokeValue(value, learned.policy, Dynamics.of(rules), rules.noise, layers.visits)
+        own = LearnedWorth(worth, learned_worth()[0])
+        self.search = self.judge = FrameStrokes(rules, self.values, own, layers.frames)
+
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
+        at = Positions.of(positions)
+        if at.of_frames:
+            return self.decide_frames(at, seeds).strokes
+        if self.options.rules.reward == "legal":
+            return self._fairest(at, seeds)
+        at, places, found, scores = self._score(at, seeds)
+        values = np.zeros((len(at), COLUMNS))
+        values[found.rows] = found.strokes[np.arange(len(scores)), scores.argmax(axis=1)]
+        others = np.setdiff1d(np.arange(len(at)), found.rows)
+        if len(others):
+            plain = self._plain.play(at[others], np.asarray(seeds)[others])
+            values[others], places[others] = plain.values, plain.place
+        return Strokes(values, places)
+
+    def rank(self, positions: PositionsLike, seeds: Integers) -> list[Ranked]:
+        """Its strokes, best first, with what they are worth [points]; the one that need only be fair alone."""
+        at = Positions.of(positions)
+        if at.of_frames:
+            return self._consider(at, seeds)
+        if self.options.rules.reward == "legal":
+            strokes = self._fairest(at, seeds)
+            return [Ranked(strokes[k : k + 1], None) for k in range(len(at))]
+        at, places, found, scores = self._score(at, seeds)
+        made: list[Ranked] = self._plain.rank(at, seeds)
+        for j, k in enumerate(found.rows.tolist()):
+            order = np.argsort(-scores[j], kind="stable")
+            where = np.repeat(places[k : k + 1], len(order), axis=0)
+            made[k] = Ranked(Strokes(found.strokes[j, order], where), scores[j, order].astype(np.float64))
+        return made
+
+    def _fairest(self, positions: Positions, seeds: Integers) -> Strokes:
+        """Strokes that need only be fair: at a ball that is likely to be struck, else over cushions, else as ``ghost_ball``."""
+        at, keys = positions.known_to(self.options.rules), seeds_of(seeds, len(positions))
+        plain, (visits, places) = self._plain.play(at, keys).values, place_cue_balls(at, keys)
+        every, (strokes, there, seen) = np.arange(len(at)), self.search.look(begun(visits), keys)
+        fair = np.where(there, 1.0 - seen[..., FOULS], 0.0)[:, LOOKS:]
+        worth = self.search.scores(seen)[:, LOOKS:]
+        best = (fair + 1e-3 * worth).argmax(axis=1)  # of those that are alike the worthiest
+        fair, found = fair[every, best, None], strokes[every, LOOKS + best]
+        over, some = over_cushions(self.search, visits, 1, keys)
+        values = np.where(some > 0.0, over[:, 0], np.where(fair > 0.0, found, plain))
+        return Strokes(np.where(fair >= LIKELY, found, values), places)
+
+    def _score(self, at: Positions, seeds: Integers) -> tuple[Positions, Floats, Candidates, Any]:
+        """Positions of visits, the places of cue balls in hand, the strokes that are looked at, and their values."""
+        at, keys = at.known_to(self.options.rules), seeds_of(seeds, len(at))
+        visits, places = place_cue_balls(at, keys)
+        found = self.values.candidates(visits, LOOKS, keys)
+        return at, places, found, self.values.scores(found.seen)

@@ -11,14 +11,16 @@ from ..game import frame_columns as columns
 from ..game.balls import mask_of_present
 from ..physics.parameters import nominal
 from ..planning import Positions
+from ..planning.learned.dense_layers import Layers, Weights
 from ..planning.positions import PositionsLike, seeds_of
 from ..planning.strokes import decode
 from ..tasks.discrete_actions import Choices
 from ..tasks.frames import Frames, sayings
-from ..tasks.observations import arrange
+from ..tasks.observations import STROKE_SIZE, arrange
 from ..tasks.options import Options
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, place_cue_balls
+from .weights import learned_menu
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), "miss")  # with "miss" it sees more
 
@@ -159,3 +161,35 @@ def begun(at: Positions) -> Positions:
     masks = np.array([mask_of_present(on_table) & ~1 for on_table in at.on_table], np.int64)
     game[:, [columns.ON_TABLE, columns.RACK]] = masks[:, None]
     return Positions(at.positions, at.on_table, game, None, at.conditions)
+
+
+class MenuNetwork:
+    """A ``Seen`` that chooses from menus of a "visit" or a "frame" by the ``layers`` of a ``snooker_env.sb3.StrokesPolicy``."""
+
+    def __init__(self, layers: Weights, task: str) -> None:
+        self.options: dict[str, str] = {"action": "strokes", "observation": "strokes", "task": task}
+        self._layers = Layers(layers, "tanh")
+
+    def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Ints:
+        """The choice with the highest score for each observation (n, K * 23 + S); ``masks`` (n, K): those on the menu."""
+        seen, there = np.asarray(observations), np.asarray(masks, np.bool_)
+        n, choices = there.shape
+        strokes = seen[:, : choices * STROKE_SIZE].reshape(n, choices, STROKE_SIZE)
+        state = np.repeat(seen[:, None, choices * STROKE_SIZE :], choices, axis=1)
+        rows = np.concatenate([strokes, state], axis=2)
+        scores = self._layers(rows.reshape(n * choices, rows.shape[2])).reshape(n, choices)
+        return np.where(there, scores, -np.inf).argmax(axis=1)
+
+
+class MenuPlayer(SeenPlayer):
+    """``strokes``: one network for visits, another for frames."""
+
+    def __init__(self) -> None:
+        self._networks = [MenuNetwork(learned_menu(f"{task}s"), task) for task in ("visit", "frame")]
+        super().__init__(self._networks[0], name="strokes")
+        self.frames = True  # it knows them; bound, it sees what its options say
+
+    def _bind(self, options: Options) -> None:
+        self.frames = options.task != "visit"
+        self.seen = self._networks[self.frames]
+        super()._bind(options)

@@ -16,7 +16,7 @@ from snooker_env.benchmark import play_visits
 from snooker_env.physics import conditions
 from snooker_env.physics.parameters import nominal
 from snooker_env.planning import Positions
-from snooker_env.planning.learned.pot_view import SHOWN
+from snooker_env.planning.learned.stroke_policy import SHOWN
 from tests.agents.training import results, run
 
 DRAWN = {"action": "discrete", "noise": "professional", "layout": "opened", "conditions": "drawn"}

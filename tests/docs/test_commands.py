@@ -78,11 +78,11 @@ ELSEWHERE = {
 
 DECLARED = {
     "train.py": ["agents/train.py", "agents/learning/settings.py"],
-    "agents.evaluate": ["agents/cluster.py", "snooker_env/players/model_options.py"],
-    "agents.tournament": ["agents/cluster.py", "snooker_env/players/model_options.py"],
+    "agents.evaluate": ["agents/cluster.py", "snooker_env/players/saved_models.py"],
+    "agents.tournament": ["agents/cluster.py", "snooker_env/players/saved_models.py"],
     "agents.learn_worth": ["agents/cluster.py"],
     "benchmarks.": ["benchmarks/_common/command.py"],
-    "snooker_env.": ["snooker_env/players/model_options.py"],
+    "snooker_env.": ["snooker_env/players/saved_models.py"],
 }
 """How a command's name begins -> other files that declare options of it."""
 

@@ -6,10 +6,9 @@ import pytest
 from snooker_env.benchmark import count_shots
 from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import touching_balls as touching_kernel
-from snooker_env.planning import FrameJudge, Position, Positions, Search, prospects_of
-from snooker_env.planning.judges import KEPT, PLANS, SURE_OF
+from snooker_env.planning import FrameJudge, Position, Positions, Search, at_pots, prospects_of
+from snooker_env.planning.judges import BUDGET, KEPT, PLANS, SURE_OF
 from snooker_env.planning.proposals import EDGE, safeties
-from snooker_env.planning.search import BUDGET
 from snooker_env.planning.trials import turn_to_striker
 from snooker_env.planning.worth import NARROWEST, WIDEST, Chance, apply_decision, decide, lead_of, left_of
 from snooker_env.planning.worth import SPREAD as MIDDLE
@@ -227,9 +226,7 @@ def test_safeties_that_promise_most_are_looked_at():
         return -strokes[:, 0]
 
     plain, choosy = judge(), judge(foresee=softest)
-    speeds = [
-        one.propose(Search(one), at, np.zeros(1, np.int64), PLANS[1]).strokes for one in (plain, choosy)
-    ]
+    speeds = [one.propose((at_pots,), at, np.zeros(1, np.int64), PLANS[1]).strokes for one in (plain, choosy)]
     safe = slice(PLANS[1].looks[0], PLANS[1].looks[0] + round(KEPT * PLANS[1].looks[1]))
     assert speeds[1][0, safe, 0].max() < np.median(speeds[0][0, safe, 0])
     assert [samples for _, samples in asked] == [1, SURE_OF] and asked[0][0] > 2 * asked[1][0]

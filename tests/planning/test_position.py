@@ -93,7 +93,6 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     at = Positions.of(env)
     assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
     assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]]
-    assert at.frames_won.tolist() == [[1, 2], [2, 1], [1, 2]]
     assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
     assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
     assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any()

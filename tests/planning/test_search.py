@@ -149,13 +149,13 @@ def test_the_ranking_recomputed(budget, value):
     """Sequential halving in plain Python, by score = (2 look + sum) / (2 + samples), look = chance x gain."""
     at, seeds = some(4), [3, 2**32 - 1, 0, 17]
     tool = search(budget, value=value)
-    worth = value or (lambda left: prospects_of(left, tool.spread, RULE_OF_THUMB)[0])
+    worth = value or (lambda left: prospects_of(left, tool.judge.spread, RULE_OF_THUMB)[0])
     ranked = tool.rank(at, seeds)
     (looks,), rounds = schedule(budget)
     total = sum(each for _, each in rounds)
     for k, seed in enumerate(seeds):
         here = at[k : k + 1]
-        strokes, chances = (one[0] for one in at_pots(tool, here, looks, [seed]))
+        strokes, chances = (one[0] for one in at_pots(tool.judge, here, looks, [seed]))
         look = chances * gains_by_hand(tool, here, strokes, np.zeros((1, 5)), worth)[:, 0]
         gains = gains_by_hand(
             tool, here, strokes, tool.judge.noise.errors_from(normal_points(total, seed)), worth
@@ -221,9 +221,9 @@ def test_without_a_pot_fouls_and_what_is_left_count():
 def test_generators_that_have_strokes_share_the_looks():
     at, calls = some(3), []
 
-    def soft(tool, here, m, scrambles):
+    def soft(judge, here, m, scrambles):
         calls.append(len(here))
-        made = at_pots(tool, here, m, scrambles)
+        made = at_pots(judge, here, m, scrambles)
         made.strokes[..., 0] = 1.0
         made.chances[1] = 0.0
         return made

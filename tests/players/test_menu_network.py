@@ -7,7 +7,7 @@ import snooker_env as sn
 from agents.evaluation.visit_figures import summary
 from snooker_env.benchmark import play_visits
 from snooker_env.players import VISITS
-from snooker_env.players.menu_network import MenuNetwork
+from snooker_env.players.seen import MenuNetwork
 from snooker_env.players.weights import learned_menu
 from tests.processes import python
 

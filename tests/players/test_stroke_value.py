@@ -15,7 +15,7 @@ from snooker_env.planning import Position, Positions
 from snooker_env.planning.learned.frame_strokes import SIZE as FRAME_SIZE
 from snooker_env.planning.learned.stroke_value import SIZE
 from snooker_env.players import VISITS
-from snooker_env.players.stroke_value_player import StrokeValuePlayer
+from snooker_env.players.search_player import StrokeValuePlayer
 from snooker_env.players.weights import FOLDER, STROKES, learned_strokes
 
 

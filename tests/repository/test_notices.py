@@ -112,7 +112,7 @@ LONG = """
 physics.engine run_batch; simulation.impacts _collide_balls _collide_cushion; tasks.stroke address; planning.aims solve_aims
 tasks.visit _conclude _begin; tasks.frame_kernels decide conclude observe finish begin show remember; game.layouts deal_tables
 planning.ghost_ball geometric_strokes; game.apply_ruling settle_one; game.paths best_paths; game.snookered _find_snooker
-planning.learned.pot_view _add_pots; planning.trials _strike; planning.pot_geometry _pots _clear_paths
+planning.learned.stroke_policy _add_pots; planning.trials _strike; planning.pot_geometry _pots _clear_paths
 """
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 

@@ -63,11 +63,6 @@ class Layers:
         self._layers = [(w, np.array(bias, np.float32)) for w, (_, bias) in zip(turned, weights, strict=True)]
         self._between = activation  # by name: a lambda cannot be pickled
 
-    @property
-    def weights(self) -> Weights:
-        """(out, in) and (out,) of each layer, as they were given: float32."""
-        return [(np.ascontiguousarray(weight.T), bias) for weight, bias in self._layers]
-
     def __call__(self, rows: Singles) -> Singles:
         """The last layer's results (n, out) for rows (n, in): float32."""
         for k, (weight, bias) in enumerate(self._layers):

@@ -1,6 +1,5 @@
-"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is likely: where
-both balls come to rest is predicted (``cue_ball_path``), and a learned worth says what that brings the other player. A network
-corrects what both kinds seem to be worth (``train.py --agent stroke_value``)."""
+"""What is a stroke of a frame worth, without playing it? Beside the pots of ``stroke_value``, safeties where no pot is likely: a
+learned worth says what the balls, where they are predicted to stop, bring the other player; a network corrects both kinds."""
 
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What is a position worth by learned networks? In a visit V = P x U: the chance that the next stroke scores, which starts
-from the likeliest pot's chance by its width, times what the visit then brings: the mean of several small networks. In a frame
-that, and what another network adds for all that comes after the visit: the error of the cue ball's direction is one of its
-inputs. ``agents.learning.value_network`` and ``agents.learn_worth`` train them."""
+from the likeliest pot's, times what the visit then brings; in a frame that, and what another network adds for what follows."""
 
 from collections.abc import Sequence
 

@@ -12,13 +12,14 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import torch
+from gymnasium import spaces
 
 from agents.learning import fused
 from agents.learning.fused import Loss, Rollout
 from agents.learning.networks import JudgedPolicy, TablePolicy
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning.learned import stroke_policy
-from snooker_env.planning.learned.pot_view import BALL_X, VIEW_SPACE, with_pots
+from snooker_env.planning.learned.stroke_policy import BALL_X, SHOWN, with_pots
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 
 N = fused.BLOCK + 45
@@ -48,7 +49,7 @@ def met():
 def policy(request):
     torch.manual_seed(0)
     actions = SnookerVectorEnv(1, action="discrete").single_action_space
-    made = request.param(VIEW_SPACE, actions, lambda _: 1e-3)
+    made = request.param(spaces.Box(-1.0, 1.0, (SHOWN,), np.float32), actions, lambda _: 1e-3)
     with torch.no_grad():
         made.action_net.score.weight.mul_(10.0)  # so that choices differ as in a trained network
     return made

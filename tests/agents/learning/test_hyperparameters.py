@@ -5,7 +5,7 @@ import pytest
 
 from agents.features.observed import training_tables
 from agents.learning import hyperparameters
-from snooker_env.planning.learned import pot_view
+from snooker_env.planning.learned import stroke_policy as pot_view
 from snooker_env.tasks.observations import SIZE
 
 

@@ -9,7 +9,7 @@ from agents.learning import judged_choices
 from agents.learning.hyperparameters import Recipe
 from agents.learning.judged_choices import RATE, JudgedChoices, to_try
 from snooker_env.planning import Planner, Positions, action_masks
-from snooker_env.planning.learned.pot_view import with_pots
+from snooker_env.planning.learned.stroke_policy import with_pots
 from snooker_env.tasks.discrete_actions import SIZE, STROKES
 from tests.positions import tables
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import torch
+from gymnasium import spaces
 
 from agents.learning import networks
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, VIEW_SPACE, with_pots
+from snooker_env.planning.learned.stroke_policy import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, with_pots
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.observations import SIZE as SEEN
 
@@ -28,7 +29,11 @@ def seen():
 @pytest.fixture
 def net():
     torch.manual_seed(0)
-    reader, head, value = networks.TableReader(VIEW_SPACE), networks.StrokeHead(), networks.ValueHead()
+    reader, head, value = (
+        networks.TableReader(spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)),
+        networks.StrokeHead(),
+        networks.ValueHead(),
+    )
     return lambda x: (head(reader(x)).detach(), value(reader(x)).detach(), reader)
 
 

@@ -10,8 +10,7 @@ from snooker_env.planning.learned.frame_strokes import POT_SIZE, SAFETIES, SHARE
 from snooker_env.planning.learned.stroke_value import LOOKS
 from snooker_env.planning.proposals import safeties
 from snooker_env.planning.worth import lead_of
-from snooker_env.players.search_player import Tactician
-from snooker_env.players.stroke_value_player import StrokeValuePlayer
+from snooker_env.players.search_player import StrokeValuePlayer, Tactician
 from snooker_env.players.weights import StrokeLayers, learned_strokes
 from snooker_env.tasks import Noise
 from snooker_env.tasks import cue_ball_path as path

@@ -10,7 +10,7 @@ from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.planning import Positions
-from snooker_env.planning.learned import pot_view
+from snooker_env.planning.learned import stroke_policy as pot_view
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
