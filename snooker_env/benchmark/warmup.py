@@ -9,8 +9,7 @@ import numpy as np
 
 from .._lib.cache import CACHE_FOLDER
 from .._lib.command import exit_code
-from .._lib.jit import ENTRIES, collecting_no_garbage
-from .._lib.notices import warming_up
+from .._lib.jit import ENTRIES, collecting_no_garbage, warming_up
 from ..advice.room import room_for
 from ..envs.snooker import SnookerEnv
 from ..game.apply_ruling import settle_table

@@ -152,11 +152,7 @@ def _ask(row, rules):
     return needs, concedes, columns.shot_clock(row, rules), replaced, anywhere, columns.may_claim(row)
 
 
-@entry(what="the rules of frames", seconds=1)
-def _play(row, result, conditions, effort, layout, duration):
-    columns.after_stroke(row, result, conditions, effort, layout, duration)
-
-
+_play = entry(columns.after_stroke, what="the rules of frames", seconds=1)
 _CHOOSE, _DRAW, _CLAIM, _CONCEDE = range(4)
 
 

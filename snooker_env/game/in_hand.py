@@ -146,9 +146,7 @@ def nearest_place(positions, on_table, x, y, radius, anywhere):
     return place[0], place[1], place[2] < np.inf
 
 
-@entry
-def _nearest_place(positions, on_table, x, y, radius, anywhere):
-    return nearest_place(positions, on_table, x, y, radius, anywhere)
+_nearest_place = entry(nearest_place)
 
 
 def place_cue(

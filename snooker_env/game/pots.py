@@ -147,13 +147,11 @@ def count_pots(positions, on_table, on, radius, most):
     return count
 
 
-@entry
-def _pots(positions, on_table, on, pots):
-    return find_pots(positions, on_table, on, BALL_RADIUS, pots)
+_find_pots = entry(find_pots)
 
 
 def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32) -> Floats:
     """Direct pots (k, POT_COLUMNS) of the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
     placed, present = np.ascontiguousarray(positions, np.float64), np.ascontiguousarray(on_table, np.bool_)
-    return out[: _pots(placed, present, int(on), out)].copy()
+    return out[: _find_pots(placed, present, int(on), BALL_RADIUS, out)].copy()

@@ -592,7 +592,7 @@ def _is_sound(balls, aloft, k, reach, boundaries):
     return layout_fault(positions, on_table, reach, boundaries)[1] == SOUND
 
 
-@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_from_above))
+@entry(what="the shot engine", seconds=19)
 def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, aloft, log and ends have a batch axis.
 

@@ -17,21 +17,19 @@ from ..physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN_IMPACT, Phys
 from .shot import SimulationError
 
 
-@entry(what="the impact of two balls", uses=(contact.collide_balls,))
+@entry(what="the impact of two balls", seconds=10)
 def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
     law = Law(phys, fidelity, n_steps)
     return contact.collide_balls(v1, w1, v2, w2, normal, law, phys[P_E_B], np.empty(WORK))
 
 
-@entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
+@entry(what="the impact with a cushion", seconds=9)
 def _collide_cushion(v, w, normal, phys, fidelity, n_steps):
     e = contact.cushion_restitution(v[0] * normal[0] + v[1] * normal[1], phys)
     return contact.collide_cushion(v, w, normal, Law(phys, fidelity, n_steps), e, np.empty(WORK))
 
 
-@entry
-def _strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
-    return strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
+_strike_ball = entry(strike_ball)
 
 
 def _unit_normal(normal):

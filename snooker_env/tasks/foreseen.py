@@ -81,7 +81,7 @@ def _judge(ball_on, left, many, law, errors, desk, one):
     return worth
 
 
-@kernel(seconds=1, uses=(aim_from, foresee_pot))
+@kernel
 def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     """The strokes at a row of ``find_pots``, into their ``rows``."""
     ball, pocket, seen, rails = int(pot[POT_BALL]), int(pot[POT_POCKET]), desk.seen, law.rails
@@ -127,7 +127,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         one[F_PROMISE] = chance * (points + worth) / MOST_PROMISE
 
 
-@kernel(seconds=1, uses=(foresee_contact,))
+@kernel
 def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, desk, one):
     """The stroke on the desk along a line without a pot, into its row; in a frame with what it leaves the other player."""
     seen, its, after, there = desk.seen, desk.its, desk.after, desk.there
@@ -158,11 +158,7 @@ def _repeat_last(rows, many, size):
         rows[c] = rows[many - size + (c - many) % size] if c % STROKE_SIZE != F_THERE else 0.0
 
 
-@entry(
-    what="what is foreseen of strokes",
-    seconds=4,
-    uses=(aim_on, _foresee_pots, _foresee_line, menu.safe_stroke),
-)
+@entry(what="what is foreseen of strokes", seconds=30)
 def foresee(which, at, player, tables, rules, errors, out):
     """What ``player`` foresees on the tables ``which``, into the rows ``at`` of ``out``, which hold the flat observation.
     ``rules``: the code of the rule set, cues and constants, one row or one a table, fidelity."""
