@@ -16,7 +16,6 @@ from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .flight import SETTLE
 from .impact import free
-from .impact.contact import collide_balls, collide_cushion, collide_from_above
 from .impact.polynomial import WORK
 from .meetings import energy_loss, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN

@@ -206,7 +206,9 @@ class Physics:
         field does not go with the ranges."""
         if not isinstance(rng, np.random.Generator):
             raise refuse("rng", rng, "must be a numpy.random.Generator")
-        return physics_with(cls.of(physics), conditions.draw_constants(rng.random(conditions.COLUMNS)))
+        return physics_with(
+            cls.of(physics), tuple(conditions.draw_constants(rng.random(conditions.COLUMNS)).tolist())
+        )
 
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""
@@ -272,13 +274,9 @@ def nominal(physics: Physics) -> Floats:
     return np.array([1.0 if name == "mu_bb_scale" else getattr(physics, name) for name in conditions.NAMES])
 
 
-def physics_with(base: Physics, values: Floats) -> Physics:
-    """``base`` with these constants (8,), without tables of rolling impacts: they take longer than its shots."""
-    return _physics_with(base, tuple(values.tolist()))
-
-
 @lru_cache(maxsize=256)  # a table is asked for its constants after every stroke
-def _physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
+def physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
+    """``base`` with these 8 constants, without tables of rolling impacts: they take longer than its shots."""
     changed = dict(zip(conditions.NAMES, values, strict=True))
     scale, (a, b, c) = changed.pop("mu_bb_scale"), base.friction_law
     friction = (scale * a, scale * b, c) if b else scale * a
