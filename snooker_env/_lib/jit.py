@@ -119,13 +119,13 @@ def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds
     """
     if function is None:
         return partial(entry, what=what, seconds=seconds)
-    function = getattr(function, "py_func", function)
-    made: Any = numba.njit(**_ENTRY)(function)
-    if made is not function:  # with NUMBA_DISABLE_JIT it is the function itself
+    plain: Any = getattr(function, "py_func", function)
+    made: Any = numba.njit(**_ENTRY)(plain)
+    if made is not plain:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
         made.notice = what, seconds
-        if CACHE_FOLDER is not None and lies_in_a_file(function):
-            made._cache = Kept(function)
+        if CACHE_FOLDER is not None and lies_in_a_file(plain):
+            made._cache = Kept(plain)
         ENTRIES.append(made)
     return made
 

@@ -133,7 +133,6 @@ class _Answers(NamedTuple):
     """What a frame allows."""
 
     needs_snookers: tuple[bool, bool]
-    concede: tuple[bool, bool]
     shot_clock: int
     miss: int  # REPLACE or PLACE_ANYWHERE, if the opponent may choose it; else PLAY
     claim: bool
@@ -142,9 +141,8 @@ class _Answers(NamedTuple):
 @entry
 def _ask(row, rules):
     needs = columns.needs_snookers(row, 0), columns.needs_snookers(row, 1)
-    concedes = columns.may_concede(row, 0), columns.may_concede(row, 1)
     after_miss = columns.allowed_choice(row, columns.REPLACE, rules)
-    return _Answers(needs, concedes, columns.shot_clock(row, rules), after_miss, columns.may_claim(row))
+    return _Answers(needs, columns.shot_clock(row, rules), after_miss, columns.may_claim(row))
 
 
 _play = entry(columns.after_stroke, what="the rules of frames", seconds=1)
@@ -352,7 +350,7 @@ class Frame:
 
     def concede(self, player: int) -> "Frame":
         """``player`` concedes the frame; only the striker may."""
-        if not self._answers().concede[integer("player", player, 0, 1)]:
+        if integer("player", player, 0, 1) != self.striker or self.phase not in ("stroke", "choice"):
             raise refuse("player", player, "must be the striker of a frame that is not over")
         return self._do(_CONCEDE)
 

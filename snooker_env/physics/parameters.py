@@ -197,19 +197,6 @@ class Physics:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
 
-    @classmethod
-    def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
-        """Draw the constants of an unknown table, each uniform within its range (docs/environment/conditions.md) and independent
-        of the others; all other fields, and the friction law that is scaled, are those of ``physics``.
-
-        ``tables`` is False: they take longer to make than a table's few shots. ValueError if ``rng`` is no generator, or a
-        field does not go with the ranges."""
-        if not isinstance(rng, np.random.Generator):
-            raise refuse("rng", rng, "must be a numpy.random.Generator")
-        return physics_with(
-            cls.of(physics), tuple(conditions.draw_constants(rng.random(conditions.COLUMNS)).tolist())
-        )
-
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""
         for name in ("mu_s", "mu_r"):
