@@ -202,9 +202,8 @@ def _with(rows, beside):
 def _seen_by_strikers(tables, which):
     """The positions of the tables ``which`` from their strikers' side."""
     saved = columns.Layouts(tables.layouts_before.positions[which], tables.layouts_before.on_table[which])
-    return Positions(
-        tables.positions[which], tables.on_table[which], columns.strikers_own(tables.game[which]), saved
-    )
+    game = columns.strikers_own(tables.game[which])
+    return Positions(tables.positions[which], tables.on_table[which], game, saved)
 
 
 def _follow(rows, tables):

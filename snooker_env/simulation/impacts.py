@@ -34,11 +34,10 @@ _strike_ball = entry(strike_ball)
 
 def _unit_normal(normal):
     nx, ny, nz = array("normal", normal, (3,)).tolist()
-    if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
-        length = (nx * nx + ny * ny + nz * nz) ** 0.5
-        allowed = f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})"
-        raise refuse("normal", (nx, ny, nz), allowed)
     size = float(np.hypot(nx, ny))
+    if abs(nz) > 1e-9 or abs(size - 1.0) > 1e-6:
+        allowed = f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {hypot(nx, ny, nz):.7g})"
+        raise refuse("normal", (nx, ny, nz), allowed)
     return nx / size, ny / size
 
 
