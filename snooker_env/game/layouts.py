@@ -211,14 +211,9 @@ class LayoutPlan:
         return plan_of, (self.name, self.unfit)
 
 
-STORED_IN = {
-    "opened": ("opened", False),
-    "held_out": ("opened", True),
-    "safety": ("safety", False),
-    "held_out_safety": ("safety", True),
-    "escape": ("escape", False),
-    "held_out_escape": ("escape", True),
-}
+STORED_IN = {"opened": ("opened", False), "held_out": ("opened", True)}
+for _bank in ("safety", "escape"):
+    STORED_IN |= {_bank: (_bank, False), f"held_out_{_bank}": (_bank, True)}
 """Of each layout of stored tables its bank, and whether it deals those that are held out."""
 _NAMES = {"break_off": (BREAK_OFF, N_REDS, 0, 0), "line_up": (LINE_UP, N_REDS, 0, 0)}
 _NAMES |= {"colours": (COLOURS, 0, 0, 0), "snookered": (SNOOKERED, SNOOKERED_REDS, 0, 0)}

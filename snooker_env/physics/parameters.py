@@ -6,7 +6,7 @@ The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.
 
 import dataclasses
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -170,12 +170,7 @@ class Physics:
         tables (docs/physics/constants.md). "carom": a heated three-cushion table and its balls, fitted to 61
         tracked shots of one match (``python -m benchmarks.real_shots``)."""
         choice("physics", name, PRESETS)
-        return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)
-
-    @classmethod
-    @cache  # a frozen object, and made in every call of ``simulate`` that names it
-    def _whole(cls, name):
-        return cls._replace_fields(PRESETS[name], {})
+        return cls._replace_fields(PRESETS[name], fields) if fields else _WHOLE[name]
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
@@ -306,3 +301,4 @@ _CLOTH = {"mu_s": 0.146, "mu_r": 0.00431, "roll_drag": 0.0136, "spin_decel": 3.7
 _CUSHION = {"e_c": 0.911, "e_c_knee": 0.695, "e_c_power": 0.0455, "mu_c": 0.238, "sin_theta": 0.201}
 _CAROM = {**_BALLS, **_CLOTH, **_CUSHION, "tables": False}  # above the knee no table would be used
 PRESETS: dict[str, dict[str, Any]] = {"paper": {}, "match": _MATCH, "carom": _CAROM}
+_WHOLE = {name: Physics(**fields) for name, fields in PRESETS.items()}

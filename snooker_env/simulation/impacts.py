@@ -41,15 +41,11 @@ def _unit_normal(normal):
     return nx / size, ny / size
 
 
-def _vector(name, value):
-    most, unit = (FASTEST_IMPACT, "m/s") if name.startswith("v") else (MOST_SPIN_IMPACT, "rad/s")
-    return tuple(array(name, value, (3,), most, unit).tolist())
-
-
 def _solve(kernel, what, before, normal, physics, fidelity) -> Any:
     """Velocities and spins after an impact, of those ``before`` by name; SimulationError if it does not end."""
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = tuple(_vector(name, value) for name, value in before.items())
+    most = {"v": (FASTEST_IMPACT, "m/s"), "w": (MOST_SPIN_IMPACT, "rad/s")}
+    args = tuple(tuple(array(name, x, (3,), *most[name[0]]).tolist()) for name, x in before.items())
     *after, solved = kernel(*args, _unit_normal(normal), physics.packed_for(solver), *solver)
     if not solved:
         words = f"did not end at fidelity {fidelity!r}; try another fidelity"
