@@ -19,9 +19,6 @@ from .command import say
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_ENTRY: dict[str, Any] = _OPTIONS | ENTRY_OPTIONS
-_INNER: dict[str, Any] = _OPTIONS | OPTIONS
-_INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
 ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
 
@@ -47,8 +44,8 @@ class Entry(CPUDispatcher):
             return super().compile(sig)
 
 
-def _inner(function, options):
-    made = numba.njit(**options)(function)
+def _inner(function, **options):
+    made = numba.njit(**_OPTIONS, **OPTIONS, **options)(function)
     if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Inner
     return made
@@ -80,12 +77,12 @@ def kernel(function: Callable[..., Any]) -> Any:
     ...
     TypeError: double is an inner kernel: only kernels can call it
     """
-    return _inner(function, _INNER)
+    return _inner(function)
 
 
 def inline(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel into its one caller, a large ``kernel``, so as to optimise its code once."""
-    return _inner(function, _INLINED)
+    return _inner(function, inline="always")
 
 
 def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds: int = 0) -> Any:
@@ -120,7 +117,7 @@ def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds
     if function is None:
         return partial(entry, what=what, seconds=seconds)
     plain: Any = getattr(function, "py_func", function)
-    made: Any = numba.njit(**_ENTRY)(plain)
+    made: Any = numba.njit(**_OPTIONS, **ENTRY_OPTIONS)(plain)
     if made is not plain:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
         made.notice = what, seconds

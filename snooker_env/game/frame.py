@@ -30,8 +30,6 @@ MOST_BREAK = 155
 SETTLED: dict[str, Any] = {"ball_on": BallOn.NOTHING, "failures": 0, "saved": None, "misses": 0}
 SETTLED |= dict.fromkeys(("free_ball", "miss_called", "warned", "anywhere"), False)
 """The fields of a frame that is over."""
-REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
-"""The fields that are restored with a position that is replaced."""
 
 
 def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
@@ -89,7 +87,7 @@ def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
         lost = gone & ~REDS_MASK or gone & frame.on_table
         allowed = "must have the balls on_table after the foul, and no others except reds"
         yield after_foul and lost != 0, "saved", allowed
-        for name in REPLACED:
+        for name in ("on_table", "ball_on", "in_hand", "free_ball", "anywhere"):
             other = getattr(frame.saved, name) != getattr(frame, name)
             allowed = f'must have the present {name}: in phase "stroke" it has just been restored'
             yield stroke and other, "saved", allowed

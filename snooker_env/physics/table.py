@@ -258,13 +258,8 @@ class Table:
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
         """The indices of the layouts that ``check`` would refuse. ``positions`` (b, n, 2) [m], NaN for a ball off the table."""
-        here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
-        while True:
-            k, _, fault, _ = self._first_fault(positions[first:], here[first:], R)
-            if fault == SOUND:
-                return unfit
-            first += k + 1
-            unfit.append(first - 1)
+        here, each = ~np.isnan(positions[..., 0]), [slice(k, k + 1) for k in range(len(positions))]
+        return [one.start for one in each if self._first_fault(positions[one], here[one], R)[2] != SOUND]
 
     def check_ball(self, R: float) -> None:
         """ValueError if the table is made for other balls than ``R`` [m], or too narrow for them."""
