@@ -107,6 +107,7 @@ def _ask_rules(env: SnookerEnv) -> None:
     frame = Frame.start()
     frame.play(Stroke())
     frame.concede(0)
+    frame.needs_snookers(0)
     pots_of(env.positions, env.on_table, REDS_MASK)
     place_cue(env.positions, env.on_table, 0.0, 0.0)
     settle_table(env.positions, env.on_table, Situation(), Stroke())
