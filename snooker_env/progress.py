@@ -11,7 +11,7 @@ from tqdm import tqdm
 __all__ = ["Progress"]
 
 
-class Progress:
+class Progress(tqdm):
     """A progress bar of ``tqdm`` for a part of a long command: what it does, how far and fast it is, the time left.
 
     Parameters
@@ -33,9 +33,8 @@ class Progress:
 
     def __init__(self, what: str, total: int, unit: str, *, done: int = 0, to: TextIO | None = None):
         self.done: int = done
-        self.total: int = total
         silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
-        self._bar = tqdm(
+        super().__init__(
             desc=what,
             total=total,
             initial=done,
@@ -45,16 +44,10 @@ class Progress:
             dynamic_ncols=True,
         )
 
-    def __enter__(self) -> "Progress":
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._bar.close()
-
     def at(self, done: int, figures: str = "") -> None:
         """Note how much is done, and ``figures`` to say with it."""
-        self._bar.set_postfix_str(figures, refresh=False)
-        self._bar.update(done - self.done)
+        self.set_postfix_str(figures, refresh=False)
+        self.update(done - self.done)
         self.done = done
 
 

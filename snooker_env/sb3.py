@@ -68,10 +68,6 @@ class SnookerVecEnv(VecEnv):
     ((4, 61), 'float32', 4)
     """
 
-    tables: SnookerVectorEnv
-    info_keys: tuple[str, ...]
-    reset_infos: list[dict[str, Any]]
-
     def __init__(
         self, num_envs: int, *, seed: int | None = None, info_keys: Sequence[str] = (), **kwargs: Any
     ):
@@ -80,9 +76,11 @@ class SnookerVecEnv(VecEnv):
         if "autoreset_mode" in kwargs:
             words = "must be left out: Stable-Baselines3 needs SAME_STEP"
             raise refuse("autoreset_mode", kwargs["autoreset_mode"], words)
-        self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
+        self.tables: SnookerVectorEnv = SnookerVectorEnv(
+            num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs
+        )
         known = (*self.tables.tables.reals, *self.tables.tables.COUNTS, "foul")
-        self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
+        self.info_keys: tuple[str, ...] = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self.metadata = self.tables.metadata
         self._actions: Any = None

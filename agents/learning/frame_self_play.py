@@ -11,7 +11,6 @@ import numpy as np
 
 from snooker_env import Options
 from snooker_env.game import frame_columns as columns
-from snooker_env.game.sides import strikers_own
 from snooker_env.planning import Positions
 from snooker_env.planning.worth import last_of, lead_of, left_of
 from snooker_env.players import FRAMES, decision_seeds
@@ -181,7 +180,7 @@ def _replies(player, decided, here, rng):
         best += [tried.strokes.values[pick] for pick in picks.tolist()]
     rows, errors = np.array(rows), player.judge.noise.draw_errors(rng, len(rows))
     left = player.judge.outcomes(decided.start, here[rows], np.array(best), errors)
-    left.game[:] = strikers_own(left.game)
+    left.game[:] = columns.strikers_own(left.game)
     on = np.flatnonzero(left.game[:, columns.OVER] == 0)
     _, played, row = _judge_strokes(player, left[on], rng.integers(2**31, size=len(on)), rng)
     return row, rows[on[played]]
@@ -203,7 +202,8 @@ def _with(rows, beside):
 def _seen_by_strikers(tables, which):
     """The positions of the tables ``which`` from their strikers' side."""
     saved = columns.Layouts(tables.layouts_before.positions[which], tables.layouts_before.on_table[which])
-    return Positions(tables.positions[which], tables.on_table[which], strikers_own(tables.game[which]), saved)
+    game = columns.strikers_own(tables.game[which])
+    return Positions(tables.positions[which], tables.on_table[which], game, saved)
 
 
 def _follow(rows, tables):

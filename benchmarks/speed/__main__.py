@@ -51,7 +51,7 @@ TABLES = 1024
 """Tables of a vector environment."""
 
 
-@entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
+@entry(what="the benchmark of an impact", seconds=10)
 def _same_impact(x, normal, times, phys, code, n_steps):
     v1, w1, still, total = (x[0], x[1], 0.0), (x[2], x[3], x[4]), (0.0, 0.0, 0.0), 0.0
     law, work = Law(phys, code, n_steps), np.empty(WORK)

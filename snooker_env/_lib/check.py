@@ -62,12 +62,8 @@ def number(
 
     Parameters
     ----------
-    field, value
-        Name of the argument, for the message, and its value.
-    low, high : float
-        Ends of the range [low, high]; infinite by default.
-    open_low : bool
-        Whether ``low`` itself is excluded: (low, high].
+    field, value, low, high, open_low
+        Name of the argument, for the message; its value; the ends of the range [low, high]; True for (low, high].
 
     Returns
     -------

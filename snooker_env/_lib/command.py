@@ -4,10 +4,17 @@ import errno
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 INTERRUPTED = 130  # the exit code after Ctrl-C, as shells have it
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)  # of a full or failing disk
+
+
+def say(text: str) -> None:
+    """Print a line to stderr, unless ``SNOOKER_ENV_QUIET`` is set or there is no stderr."""
+    if os.environ.get("SNOOKER_ENV_QUIET", "0") in ("", "0") and sys.stderr is not None:
+        with suppress(OSError, ValueError):
+            print(f"snooker_env: {text}", file=sys.stderr, flush=True)
 
 
 @contextmanager

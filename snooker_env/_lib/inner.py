@@ -153,10 +153,6 @@ class _EntryCompiler(compiler.Compiler):
         return super().compile_extra(func)
 
 
-class EntryPoint:
-    """What stands for the machine code that an inner kernel does not have."""
-
-
 class Inner(CPUDispatcher):
     """What ``jit.kernel`` makes of a function: other kernels can call it, and Python cannot."""
 
@@ -183,7 +179,7 @@ class Inner(CPUDispatcher):
 
         def add_overload(self, cres: Any) -> None:
             """Keep what was compiled for one signature."""
-            cres = cres._replace(entry_point=EntryPoint())
+            cres = cres._replace(entry_point=object())  # in place of machine code, which it has not
             libraries = list(dict.fromkeys([cres.library, *cres.library._linking_libraries]))
             cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, libraries)
             self.overloads[tuple(cres.signature.args)] = cres

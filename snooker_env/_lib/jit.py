@@ -1,25 +1,24 @@
-"""How are kernels compiled? The one place of numba's options; ``cache.py`` says where machine code is kept.
+"""How are kernels compiled, and what is said of it? The one place of numba's options; ``cache.py`` keeps machine code.
 
 * Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
 * No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch."""
 
 import gc
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 import numba
+from numba.core import event
 from numba.core.registry import CPUDispatcher
 
 from .cache import CACHE_FOLDER, Kept, lies_in_a_file
+from .command import say
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
-from .notices import Cost
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_ENTRY: dict[str, Any] = _OPTIONS | ENTRY_OPTIONS
-_INNER: dict[str, Any] = _OPTIONS | OPTIONS
-_INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
 ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
 
@@ -45,33 +44,27 @@ class Entry(CPUDispatcher):
             return super().compile(sig)
 
 
-def _inner(function, options):
-    made = numba.njit(**options)(function)
+def _inner(function, **options):
+    made = numba.njit(**_OPTIONS, **OPTIONS, **options)(function)
     if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Inner
     return made
 
 
-def kernel(
-    function: Callable[..., Any] | None = None, *, seconds: int = 0, uses: tuple[Any, ...] = ()
-) -> Any:
+def kernel(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
     Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot.
 
     Parameters
     ----------
-    function : callable, optional
-        The function to compile; None: the call returns a decorator.
-    seconds : int
-        Time to compile it on a quiet machine [s], without large kernels that it uses; 0: less than one.
-    uses : tuple of kernels
-        The large kernels (``seconds`` above 0) that it calls, for the notice before a long compile.
+    function : callable
+        The function to compile.
 
     Returns
     -------
     kernel
-        The compiled function, which compiles at its first use; or a decorator.
+        The compiled function, which compiles at its first use.
 
     Examples
     --------
@@ -84,25 +77,15 @@ def kernel(
     ...
     TypeError: double is an inner kernel: only kernels can call it
     """
-    if function is None:
-        return partial(kernel, seconds=seconds, uses=uses)
-    made: Any = _inner(function, _INNER)
-    made.cost = Cost("", seconds, uses)
-    return made
+    return _inner(function)
 
 
 def inline(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel into its one caller, a large ``kernel``, so as to optimise its code once."""
-    return _inner(function, _INLINED)
+    return _inner(function, inline="always")
 
 
-def entry(
-    function: Callable[..., Any] | None = None,
-    *,
-    what: str = "",
-    seconds: int = 0,
-    uses: tuple[Any, ...] = (),
-) -> Any:
+def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds: int = 0) -> Any:
     """Compile a kernel that Python calls. Use as a decorator.
 
     Its machine code is kept on disk, under a hash of the source of the package and of its module. A function
@@ -111,13 +94,9 @@ def entry(
     Parameters
     ----------
     function : callable, optional
-        The function to compile; None: the call returns a decorator.
-    what : str
-        What it is, for the line on stderr before a compile of more than a second; "": no line.
-    seconds : int
-        Time to compile it on a quiet machine [s], without the large kernels that it uses.
-    uses : tuple of kernels
-        The large kernels that it calls.
+        The function, or inner kernel, to compile; None: the call returns a decorator.
+    what, seconds
+        What it is, and the most time [s] that a quiet machine compiles it: for the line on stderr before. "": no line.
 
     Returns
     -------
@@ -136,12 +115,59 @@ def entry(
     True
     """
     if function is None:
-        return partial(entry, what=what, seconds=seconds, uses=uses)
-    made: Any = numba.njit(**_ENTRY)(function)
-    if made is not function:  # with NUMBA_DISABLE_JIT it is the function itself
+        return partial(entry, what=what, seconds=seconds)
+    plain: Any = getattr(function, "py_func", function)
+    made: Any = numba.njit(**_OPTIONS, **ENTRY_OPTIONS)(plain)
+    if made is not plain:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
-        made.cost = Cost(what, seconds, uses)
-        if CACHE_FOLDER is not None and lies_in_a_file(function):
-            made._cache = Kept(function)
+        made.notice = what, seconds
+        if CACHE_FOLDER is not None and lies_in_a_file(plain):
+            made._cache = Kept(plain)
         ENTRIES.append(made)
     return made
+
+
+_bars: list[Callable[[], None]] = []  # of the warm-ups that run
+
+
+@contextmanager
+def warming_up(kernels: Iterable[Any], tick: Callable[[int, int], None]) -> Iterator[None]:
+    """Within this context notices are, on a terminal, a bar of the ``kernels``: ``tick(ready, all)`` before each long compile."""
+    asked, shown = [kernel for kernel in kernels if not kernel.signatures], []
+
+    def show() -> None:
+        shown.append(sum(bool(kernel.signatures) for kernel in asked))
+        tick(shown[-1], len(asked))
+
+    _bars.append(show)
+    try:
+        yield
+        if shown:
+            show()
+    finally:
+        _bars.pop()
+
+
+class _Listener(event.Listener):
+    """numba calls it for every compile of this process, that is for what was not in the cache."""
+
+    def on_start(self, event):
+        kernel = (event.data or {}).get("dispatcher")
+        what, seconds = getattr(kernel, "notice", ("", 0))  # other packages compile too
+        if not what:
+            return
+        if _bars and sys.stderr is not None and sys.stderr.isatty():
+            _bars[-1]()
+            return
+        cache = getattr(kernel, "_cache", None)
+        kept = isinstance(cache, Kept) and cache.has_room()
+        once, where = ("once, ", f"kept in {CACHE_FOLDER}") if kept else ("", "for this process only")
+        hint = "" if _bars else "python -m snooker_env warmup compiles everything ahead; "
+        text = f"compiling {what} to machine code, {once}up to {seconds} s"
+        say(f"{text} ({where}; {hint}SNOOKER_ENV_QUIET=1 hides this)")
+
+    def on_end(self, event):
+        pass
+
+
+event.register("numba:compile", _Listener())

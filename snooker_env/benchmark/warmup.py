@@ -9,8 +9,7 @@ import numpy as np
 
 from .._lib.cache import CACHE_FOLDER
 from .._lib.command import exit_code
-from .._lib.jit import ENTRIES, collecting_no_garbage
-from .._lib.notices import warming_up
+from .._lib.jit import ENTRIES, collecting_no_garbage, warming_up
 from ..advice.practice import room_for
 from ..envs.snooker import SnookerEnv
 from ..game.apply_ruling import settle_table
@@ -89,6 +88,7 @@ def _ask(env: SnookerEnv) -> None:
     frame = Frame.start()
     frame.play(Stroke())
     frame.concede(0)
+    frame.needs_snookers(0)
     pots_of(env.positions, env.on_table, REDS_MASK)
     place_cue(env.positions, env.on_table, 0.0, 0.0)
     settle_table(env.positions, env.on_table, Situation(), Stroke())

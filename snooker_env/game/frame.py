@@ -12,7 +12,6 @@ stalemates (``restart``) and the lot for a re-spotted black; docs/environment/ru
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
-from operator import itemgetter
 from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
@@ -31,8 +30,6 @@ MOST_BREAK = 155
 SETTLED: dict[str, Any] = {"ball_on": BallOn.NOTHING, "failures": 0, "saved": None, "misses": 0}
 SETTLED |= dict.fromkeys(("free_ball", "miss_called", "warned", "anywhere"), False)
 """The fields of a frame that is over."""
-REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
-"""The fields that are restored with a position that is replaced."""
 
 
 def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
@@ -90,7 +87,7 @@ def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
         lost = gone & ~REDS_MASK or gone & frame.on_table
         allowed = "must have the balls on_table after the foul, and no others except reds"
         yield after_foul and lost != 0, "saved", allowed
-        for name in REPLACED:
+        for name in ("on_table", "ball_on", "in_hand", "free_ball", "anywhere"):
             other = getattr(frame.saved, name) != getattr(frame, name)
             allowed = f'must have the present {name}: in phase "stroke" it has just been restored'
             yield stroke and other, "saved", allowed
@@ -99,11 +96,9 @@ def faults(frame: "Frame") -> Iterator[tuple[bool, str, str]]:
 def check_fields(field: str, plain: object, kind: type) -> None:
     """Raise ValueError unless ``plain`` is a dict with exactly the fields of the dataclass ``kind``."""
     names = [part.name for part in fields(kind)]
-    if not isinstance(plain, dict):
-        raise refuse(field, plain, "must be a dict with the fields " + ", ".join(names))
-    if set(plain) != set(names):
-        what = f"a dict without {[n for n in names if n not in plain]} and with the others {[n for n in plain if n not in names]}"
-        raise refuse_what(field, what, "must have exactly the fields " + ", ".join(names))
+    if not isinstance(plain, dict) or set(plain) != set(names):
+        what = f"a dict of {list(plain)}" if isinstance(plain, dict) else repr(plain)
+        raise refuse_what(field, what, "must be a dict and must have exactly the fields " + ", ".join(names))
 
 
 @contextmanager
@@ -130,33 +125,25 @@ _INTEGERS = {name: getattr(columns, name.upper()) for name in _NUMBERS} | {"brea
 _TRUTHS = ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere")
 _FLAGS = {name: getattr(columns, name.upper()) for name in _TRUTHS}
 """The columns of the fields of a ``Frame`` that are plain integers, and bools."""
-_integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
 
 
 class _Answers(NamedTuple):
     """What a frame allows."""
 
     needs_snookers: tuple[bool, bool]
-    concede: tuple[bool, bool]
     shot_clock: int
-    replace: bool
-    anywhere: bool
+    miss: int  # REPLACE or PLACE_ANYWHERE, if the opponent may choose it; else PLAY
     claim: bool
 
 
 @entry
 def _ask(row, rules):
-    replaced, anywhere = columns.may_replace(row, rules) != 0, columns.may_place_anywhere(row, rules) != 0
     needs = columns.needs_snookers(row, 0), columns.needs_snookers(row, 1)
-    concedes = columns.may_concede(row, 0), columns.may_concede(row, 1)
-    return needs, concedes, columns.shot_clock(row, rules), replaced, anywhere, columns.may_claim(row)
+    after_miss = columns.allowed_choice(row, columns.REPLACE, rules)
+    return _Answers(needs, columns.shot_clock(row, rules), after_miss, columns.may_claim(row))
 
 
-@entry(what="the rules of frames", seconds=1)
-def _play(row, result, conditions, effort, layout, duration):
-    columns.after_stroke(row, result, conditions, effort, layout, duration)
-
-
+_play = entry(columns.after_stroke, what="the rules of frames", seconds=1)
 _CHOOSE, _DRAW, _CLAIM, _CONCEDE = range(4)
 
 
@@ -284,7 +271,7 @@ class Frame:
         return _unpack(row, self.rules, self.miss, None if self.saved is None else self.saved.layout)
 
     def _answers(self):
-        return _Answers(*_ask(_pack(self), self.rule_set.code))
+        return _ask(_pack(self), self.rule_set.code)
 
     def needs_snookers(self, player: int) -> bool:
         """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
@@ -293,11 +280,6 @@ class Frame:
     def _in_phase(self, phase, act):
         if self.phase != phase:
             raise refuse("phase", self.phase, f"must be {phase!r} to {act}")
-
-    @property
-    def shot_clock(self) -> int:
-        """The longest time to play the next stroke [ms]; 0 for no limit."""
-        return self._answers().shot_clock
 
     def play(
         self,
@@ -314,12 +296,13 @@ class Frame:
 
         ``clear_path``, ``full_ball_path`` (``paths.best_paths`` before the stroke) and ``attempt`` (whether the cue ball came near
         a ball on) are for the miss rules; ``layout``: see ``Saved``. For a clock [ms]: ``time_to_play`` before the stroke,
-        ``duration`` after it; a stroke later than ``shot_clock`` counts as ``Stroke(late=True)``."""
+        ``duration`` after it; a stroke later than the shot clock counts as ``Stroke(late=True)``."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)
         if rules.clock:
-            late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
+            late = 0 < self._answers().shot_clock < time_to_play
+            lasted = integer("duration", duration, 0, MOST_CLOCK)
         result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
         conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
         row, effort = _pack(self), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
@@ -331,9 +314,8 @@ class Frame:
         """The opponent's choices after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
-        asked = self._answers()
-        last: tuple[Choice, ...] = ("replace",) if asked.replace else ("anywhere",) if asked.anywhere else ()
-        return ("play", "play_again", *last)
+        after_miss = self._answers().miss
+        return CHOICES[:2] if after_miss == columns.PLAY else (*CHOICES[:2], CHOICES[after_miss])
 
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
@@ -366,7 +348,7 @@ class Frame:
 
     def concede(self, player: int) -> "Frame":
         """``player`` concedes the frame; only the striker may."""
-        if not self._answers().concede[integer("player", player, 0, 1)]:
+        if integer("player", player, 0, 1) != self.striker or self.phase not in ("stroke", "choice"):
             raise refuse("player", player, "must be the striker of a frame that is not over")
         return self._do(_CONCEDE)
 
@@ -429,8 +411,8 @@ def _unpack(row, rules, miss, layout):
         balls = {"on_table": at[columns.SAVED_ON_TABLE], "ball_on": BallOn(at[columns.SAVED_BALL_ON])}
         cue = {"in_hand": placed > 0, "anywhere": placed == 2}
         saved = Saved(**balls, **cue, free_ball=bool(at[columns.SAVED_FREE_BALL]), layout=kept)
-    fields = dict(zip(_INTEGERS, _integers(at), strict=True))
-    fields |= zip(_FLAGS, map(bool, _flags(at)), strict=True)
+    fields: dict[str, Any] = {name: at[column] for name, column in _INTEGERS.items()}
+    fields |= {name: bool(at[column]) for name, column in _FLAGS.items()}
     fields |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}
     fields |= {"phase": PHASES[at[columns.PHASE]], "rules": rules, "miss": miss, "saved": saved}
     return Frame(**fields, winner=None if at[columns.WINNER] < 0 else at[columns.WINNER])

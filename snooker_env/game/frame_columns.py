@@ -6,8 +6,10 @@ they may. What "replace" restores is in ``Layouts``. A visit without a frame has
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._lib.jit import kernel
-from .._lib.types import Bools, Floats
+from .._lib.types import Bools, Floats, Ints
 from .balls import BLACK, COLOURS_MASK, available, balls_on_kernel, next_on_kernel
 from .fouls import FOUL, OUTCOME
 from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
@@ -278,12 +280,36 @@ def claim(row):
 
 
 @kernel
-def may_concede(row, player):
-    """Whether ``player`` may concede the frame: only the striker may."""
-    return row[STRIKER] == player and (row[PHASE] == STROKE or row[PHASE] == CHOICE)
-
-
-@kernel
 def concede(row):
     """The striker concedes the frame."""
     _end(row, 1 - row[STRIKER])
+
+
+# How a player sees frames.
+
+
+def swap_sides(game: Ints) -> Ints:
+    """Rows of frames (m, COLUMNS) as if the players had changed sides: a new array."""
+    other = game.copy()
+    for a, b in ((SCORE_0, SCORE_1), (FRAMES_0, FRAMES_1)):
+        other[:, a], other[:, b] = game[:, b], game[:, a]
+    for column in (STRIKER, BREAKER, FIRST_BREAK):
+        other[:, column] = 1 - game[:, column]
+    winner = game[:, WINNER]
+    other[:, WINNER] = np.where(winner < 0, winner, 1 - winner)
+    other[:, PAID] = -game[:, PAID]
+    return other
+
+
+def strikers_own(game: Ints) -> Ints:
+    """Rows of frames (m, COLUMNS) with the striker as player 0: a new array."""
+    return np.where(game[:, STRIKER, None] == 1, swap_sides(game), game)
+
+
+def as_visits(game: Ints) -> Ints:
+    """Copied rows as a player of visits sees them: free ball as any colour, anywhere as already placed."""
+    seen = game.copy()
+    free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
+    seen[free, BALL_ON] = seen[free, FREE_BALL] = 0
+    seen[anywhere, IN_HAND] = seen[anywhere, ANYWHERE] = 0
+    return seen

@@ -146,25 +146,15 @@ def nearest_place(positions, on_table, x, y, radius, anywhere):
     return place[0], place[1], place[2] < np.inf
 
 
-@entry
-def _nearest_place(positions, on_table, x, y, radius, anywhere):
-    return nearest_place(positions, on_table, x, y, radius, anywhere)
+_nearest_place = entry(nearest_place)
 
 
-def place_cue(
-    positions: Vectors,
-    on_table: Flags,
-    x: float,
-    y: float,
-    *,
-    radius: float = BALL_RADIUS,
-    anywhere: bool = False,
-) -> Place:
+def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, anywhere: bool = False) -> Place:
     """The free place in the D (or on the bed) nearest to (x, y) [m]; ValueError if there is none."""
     placed, present = check_table(positions, on_table)
     present[0] = False
     x, y = number("x", x), number("y", y)
-    px, py, free = _nearest_place(placed, present, x, y, float(radius), bool(anywhere))
+    px, py, free = _nearest_place(placed, present, x, y, BALL_RADIUS, bool(anywhere))
     if not free:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

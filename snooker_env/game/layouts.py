@@ -211,19 +211,16 @@ class LayoutPlan:
         return plan_of, (self.name, self.unfit)
 
 
-STORED_IN = {
-    "opened": ("opened", False),
-    "held_out": ("opened", True),
-    "safety": ("safety", False),
-    "held_out_safety": ("safety", True),
-    "escape": ("escape", False),
-    "held_out_escape": ("escape", True),
-}
+STORED_IN = {"opened": ("opened", False), "held_out": ("opened", True)}
+for _bank in ("safety", "escape"):
+    STORED_IN |= {_bank: (_bank, False), f"held_out_{_bank}": (_bank, True)}
 """Of each layout of stored tables its bank, and whether it deals those that are held out."""
-_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS)}
-_NAMES |= {"colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
-_COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
-_COUNTS = [str(n) for n in range(N_REDS + 1)]
+_NAMES = {"break_off": (BREAK_OFF, N_REDS, 0, 0), "line_up": (LINE_UP, N_REDS, 0, 0)}
+_NAMES |= {"colours": (COLOURS, 0, 0, 0), "snookered": (SNOOKERED, SNOOKERED_REDS, 0, 0)}
+_CODES = _NAMES | {f"pots:{name}": (POT, 1, *window) for name, window in POT_WINDOWS.items()}
+for _reds in range(N_REDS + 1):
+    _CODES |= {f"random:{_reds}": (RANDOM, _reds, 0, 0), f"break_off:{_reds}": (BREAK_OFF, _reds, 0, 0)}
+"""``LayoutPlan.code`` of each layout that is no stored one."""
 LAYOUTS = (*STORED_IN, *_NAMES)
 """Names without a number: "opened", "safety", "escape" and what is held out of each; "break_off", "line_up",
 "colours", "snookered"."""
@@ -231,24 +228,16 @@ LAYOUTS = (*STORED_IN, *_NAMES)
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> LayoutPlan:
     """The ``LayoutPlan`` of a layout, see ``layout``, without the tables ``unfit`` of its bank; ValueError for others."""
-    name, asked = name if isinstance(name, str) else "", name
-    head, _, which = name.partition(":")
-    tables, code = NO_BANK, None
-    if name in STORED_IN:
+    if isinstance(name, str) and name in STORED_IN:
         which, held_out = STORED_IN[name]
-        tables, part = bank_without(which, unfit), split_bank(which)[held_out]
-        code = (STORED, N_REDS, part.start, part.stop)
-    elif name in _NAMES:
-        code = (*_NAMES[name], 0, 0)
-    elif head in _COUNTED and which in _COUNTS:
-        code = (_COUNTED[head], int(which), 0, 0)
-    elif head == "pots" and which in POT_WINDOWS:
-        code = (POT, 1, *POT_WINDOWS[which])
-    if code is None:
-        known = ", ".join(map(repr, LAYOUTS))
-        allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
-        raise refuse("layout", asked, allowed)
-    return LayoutPlan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
+        part = split_bank(which)[held_out]
+        code = np.array((STORED, N_REDS, part.start, part.stop), np.float64)
+        return LayoutPlan(name, code, bank_without(which, unfit), unfit)
+    if isinstance(name, str) and name in _CODES:
+        return LayoutPlan(name, np.array(_CODES[name], np.float64), NO_BANK)
+    known = ", ".join(map(repr, LAYOUTS))
+    allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
+    raise refuse("layout", name, allowed)
 
 
 def layout(plan: LayoutPlan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:

@@ -31,6 +31,10 @@ POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, ghost ball [m], cosine of the cut, tolerance of the aim [rad]."""
 POT_COLUMNS = 6
 """Their number."""
+RUN_BALL, RUN_POCKET, RUN_X, RUN_Y, RUN_DX, RUN_DY, RUN_LENGTH, RUN_WIDTH = range(8)
+"""Columns of a run: ball, pocket; the ghost ball [m]; the unit vector to the pocket; length and width of the window [m]."""
+RUNS = 6 * (N_BALLS - 1), 8
+"""The shape of an array for all runs."""
 
 
 @kernel
@@ -147,13 +151,66 @@ def count_pots(positions, on_table, on, radius, most):
     return count
 
 
-@entry
-def _pots(positions, on_table, on, pots):
-    return find_pots(positions, on_table, on, BALL_RADIUS, pots)
+@kernel
+def list_runs(positions, on_table, on, radius, runs):
+    """Write the runs of the mask ``on`` that are open, wherever the cue ball lies, into ``runs`` (RUNS); returns their number."""
+    count, d = 0, 2.0 * radius
+    for ball in range(1, N_BALLS):
+        if not on_table[ball] or not (on >> ball) & 1:
+            continue
+        bx, by = positions[ball, 0], positions[ball, 1]
+        for k in range(6):
+            pocket = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
+            dx, dy = pocket[0] - bx, pocket[1] - by
+            length = sqrt(dx * dx + dy * dy)
+            if length < 1e-9:
+                continue
+            dx, dy = dx / length, dy / length
+            x, y = bx - d * dx, by - d * dy
+            if abs(x) > _WIDTH - 0.5 * d + 1e-9 or abs(y) > _LENGTH - 0.5 * d + 1e-9:
+                continue
+            along = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y]
+            width = window(along, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+            if width <= 0.0 or not clear_segment(positions, on_table, (bx, by), pocket, ball, 0, d):
+                continue
+            run = runs[count]
+            run[RUN_BALL], run[RUN_POCKET], run[RUN_X], run[RUN_Y] = ball, k, x, y
+            run[RUN_DX], run[RUN_DY], run[RUN_LENGTH], run[RUN_WIDTH] = dx, dy, length, width
+            count += 1
+    return count
+
+
+@kernel
+def pots_along(runs, many, positions, on_table, radius, pots):
+    """``find_pots`` to the bit, of the first ``many`` rows of ``runs``: the cue ball alone may have moved since these were listed."""
+    count, d, cx, cy = 0, 2.0 * radius, positions[0, 0], positions[0, 1]
+    for k in range(many):
+        run = runs[k]
+        least = pots[count - 1, TOLERANCE] if count == pots.shape[0] else 0.0
+        ball = int(run[RUN_BALL])
+        px, py = run[RUN_X] - cx, run[RUN_Y] - cy
+        ahead = px * run[RUN_DX] + py * run[RUN_DY]
+        if ahead <= 0.0:
+            continue
+        path = sqrt(px * px + py * py)
+        cos_cut = ahead / path
+        if path < 1e-9 or cos_cut < 0.05:  # a cut of more than 87 degrees
+            continue
+        tolerance = run[RUN_WIDTH] * (d * cos_cut / (2.0 * run[RUN_LENGTH] * path))
+        if tolerance <= least:
+            continue
+        ghost = run[RUN_X], run[RUN_Y]
+        if not clear_segment(positions, on_table, (cx, cy), ghost, ball, 0, d * (1.0 - 1e-9)):
+            continue
+        count = insert_pot(pots, count, ball, int(run[RUN_POCKET]), ghost, cos_cut, tolerance)
+    return count
+
+
+_find_pots = entry(find_pots)
 
 
 def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32) -> Floats:
     """Direct pots (k, POT_COLUMNS) of the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
     placed, present = np.ascontiguousarray(positions, np.float64), np.ascontiguousarray(on_table, np.bool_)
-    return out[: _pots(placed, present, int(on), out)].copy()
+    return out[: _find_pots(placed, present, int(on), BALL_RADIUS, out)].copy()

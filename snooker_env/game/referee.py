@@ -101,11 +101,7 @@ class Verdict:
         return self.outcome in (Outcome.STRIKER_WINS, Outcome.OPPONENT_WINS)
 
 
-@entry
-def _ruling(before, facts, flags):
-    return ruling(before, facts, flags)
-
-
+_ruling = entry(ruling)
 _FACE: dict[str, Any] = {"fouls": Foul, "ball_on": BallOn, "visit_end": VisitEnd, "outcome": Outcome}
 _FACE |= {"in_hand": bool, "free_ball": bool, "stays": lambda stays: None if stays < 0 else bool(stays)}
 """What the fields of a ``Ruling`` are in a ``Verdict``; the others are integers."""

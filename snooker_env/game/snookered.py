@@ -126,9 +126,7 @@ def find_snooker(positions, on_table, on, jaws, radius):
     return snookered_in_hand(positions, on_table, on, jaws, radius), 0
 
 
-@entry(what="the test for a snooker", seconds=1)
-def _find_snooker(positions, on_table, on, jaws, radius):
-    return find_snooker(positions, on_table, on, jaws, radius)
+_find_snooker = entry(find_snooker, what="the test for a snooker", seconds=1)
 
 
 def is_snookered(positions: Vectors, on_table: Flags, on: int, jaws: Vectors = NO_JAWS) -> tuple[bool, int]:

@@ -16,7 +16,6 @@ from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .flight import SETTLE
 from .impact import free
-from .impact.contact import collide_balls, collide_cushion, collide_from_above
 from .impact.polynomial import WORK
 from .meetings import energy_loss, meet, meet_in_air, rebound, rebound_in_air
 from .parameters import FARTHEST, FASTEST, MOST_SPIN
@@ -592,7 +591,7 @@ def _is_sound(balls, aloft, k, reach, boundaries):
     return layout_fault(positions, on_table, reach, boundaries)[1] == SOUND
 
 
-@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion, collide_from_above))
+@entry(what="the shot engine", seconds=19)
 def run_batch(balls, aloft, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, aloft, log and ends have a batch axis.
 

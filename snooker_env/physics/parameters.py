@@ -6,7 +6,7 @@ The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.
 
 import dataclasses
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -170,12 +170,7 @@ class Physics:
         tables (docs/physics/constants.md). "carom": a heated three-cushion table and its balls, fitted to 61
         tracked shots of one match (``python -m benchmarks.real_shots``)."""
         choice("physics", name, PRESETS)
-        return cls._replace_fields(PRESETS[name], fields) if fields else cls._whole(name)
-
-    @classmethod
-    @cache  # a frozen object, and made in every call of ``simulate`` that names it
-    def _whole(cls, name):
-        return cls._replace_fields(PRESETS[name], {})
+        return cls._replace_fields(PRESETS[name], fields) if fields else _WHOLE[name]
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
@@ -196,17 +191,6 @@ class Physics:
         for field in fields:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
-
-    @classmethod
-    def sample(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
-        """Draw the constants of an unknown table, each uniform within its range (docs/environment/conditions.md) and independent
-        of the others; all other fields, and the friction law that is scaled, are those of ``physics``.
-
-        ``tables`` is False: they take longer to make than a table's few shots. ValueError if ``rng`` is no generator, or a
-        field does not go with the ranges."""
-        if not isinstance(rng, np.random.Generator):
-            raise refuse("rng", rng, "must be a numpy.random.Generator")
-        return physics_with(cls.of(physics), conditions.draw_constants(rng.random(conditions.COLUMNS)))
 
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""
@@ -272,13 +256,9 @@ def nominal(physics: Physics) -> Floats:
     return np.array([1.0 if name == "mu_bb_scale" else getattr(physics, name) for name in conditions.NAMES])
 
 
-def physics_with(base: Physics, values: Floats) -> Physics:
-    """``base`` with these constants (8,), without tables of rolling impacts: they take longer than its shots."""
-    return _physics_with(base, tuple(values.tolist()))
-
-
 @lru_cache(maxsize=256)  # a table is asked for its constants after every stroke
-def _physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
+def physics_with(base: Physics, values: tuple[float, ...]) -> Physics:
+    """``base`` with these 8 constants, without tables of rolling impacts: they take longer than its shots."""
     changed = dict(zip(conditions.NAMES, values, strict=True))
     scale, (a, b, c) = changed.pop("mu_bb_scale"), base.friction_law
     friction = (scale * a, scale * b, c) if b else scale * a
@@ -321,3 +301,4 @@ _CLOTH = {"mu_s": 0.146, "mu_r": 0.00431, "roll_drag": 0.0136, "spin_decel": 3.7
 _CUSHION = {"e_c": 0.911, "e_c_knee": 0.695, "e_c_power": 0.0455, "mu_c": 0.238, "sin_theta": 0.201}
 _CAROM = {**_BALLS, **_CLOTH, **_CUSHION, "tables": False}  # above the knee no table would be used
 PRESETS: dict[str, dict[str, Any]] = {"paper": {}, "match": _MATCH, "carom": _CAROM}
+_WHOLE = {name: Physics(**fields) for name, fields in PRESETS.items()}

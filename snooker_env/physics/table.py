@@ -3,7 +3,7 @@
 Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball there is lost."""
 
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from math import acos, cos, hypot, inf, pi, sqrt
 from typing import Any, Literal, TypeAlias
 
@@ -22,26 +22,6 @@ _PAST_THE_END = 5e-3
 """So much of a jaw's circle beyond its arc's end counts [m]: an arc may end before the fall's edge, at the mouth of a middle
 pocket that is narrower than a ball by 4 mm."""
 SAME_BALL = 1e-9  # a ball's radius may differ by this much from the one that a table is made for [m]
-
-
-def _bounds_of(noses):
-    """``Table.bounds`` (2, 2) [m], from the noses (k, 5)."""
-    bounds, (axes, sides, levels, _, _) = np.full((2, 2), inf), noses.T
-    for axis in (0, 1):
-        for end, side in enumerate((-1, 1)):
-            bounds[axis, end] = side * max(levels[(axes == axis) & (sides == side)], default=inf)
-    return bounds
-
-
-def _find_narrowest(noses):
-    """The least distance of two facing noses that a ball can touch together [m], and their indices."""
-    least = (np.inf, -1, -1)
-    for a, (axis, side, level, low, high) in enumerate(noses):
-        for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
-            faces = a < b and axis == other_axis and side != other_side
-            if faces and low <= other_high and other_low <= high:
-                least = min(least, (float(level + other_level), a, b))
-    return least
 
 
 def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
@@ -131,11 +111,6 @@ class Table:
     pockets : tuple of str
         Names of the pockets, one for each fall, or ().
 
-    Attributes
-    ----------
-    bounds : float64 (2, 2)
-        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite without one.
-
     Examples
     --------
     >>> import numpy as np
@@ -151,9 +126,7 @@ class Table:
     falls: Floats
     ball_radius: float | None = field(default=None, kw_only=True)
     pockets: tuple[str, ...] = field(default=(), kw_only=True)
-    bounds: Floats = field(init=False, repr=False)
-    _narrowest: tuple[float, int, int] = field(init=False, repr=False)
-    _reaches: dict[float, Floats] = field(init=False, repr=False)
+    _reaches: dict[float, Floats] = field(init=False, repr=False, default_factory=dict)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -170,11 +143,27 @@ class Table:
         if not named or len(names) not in (0, len(self.falls)):
             allowed = f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
             raise refuse("table.pockets", names, allowed)
-        bounds = _bounds_of(self.noses)
+
+    @cached_property
+    def bounds(self) -> Floats:
+        """Lowest and highest x, then y, of the outermost noses [m]: float64 (2, 2), read-only; infinite without one."""
+        bounds, (axes, sides, levels, _, _) = np.full((2, 2), inf), self.noses.T
+        for axis in (0, 1):
+            for end, side in enumerate((-1, 1)):
+                bounds[axis, end] = side * max(levels[(axes == axis) & (sides == side)], default=inf)
         bounds.setflags(write=False)
-        object.__setattr__(self, "bounds", bounds)
-        object.__setattr__(self, "_narrowest", _find_narrowest(self.noses))
-        object.__setattr__(self, "_reaches", {})
+        return bounds
+
+    @cached_property
+    def _narrowest(self) -> tuple[float, int, int]:
+        """The least distance of two facing noses that a ball can touch together [m], and their indices."""
+        least = (inf, -1, -1)
+        for a, (axis, side, level, low, high) in enumerate(self.noses):
+            for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(self.noses):
+                faces = a < b and axis == other_axis and side != other_side
+                if faces and low <= other_high and other_low <= high:
+                    least = min(least, (float(level + other_level), a, b))
+        return least
 
     @classmethod
     def preset(cls, name: TableName = "match") -> "Table":
@@ -269,13 +258,8 @@ class Table:
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
         """The indices of the layouts that ``check`` would refuse. ``positions`` (b, n, 2) [m], NaN for a ball off the table."""
-        here, unfit, first = ~np.isnan(positions[..., 0]), [], 0
-        while True:
-            k, _, fault, _ = self._first_fault(positions[first:], here[first:], R)
-            if fault == SOUND:
-                return unfit
-            first += k + 1
-            unfit.append(first - 1)
+        here, each = ~np.isnan(positions[..., 0]), [slice(k, k + 1) for k in range(len(positions))]
+        return [one.start for one in each if self._first_fault(positions[one], here[one], R)[2] != SOUND]
 
     def check_ball(self, R: float) -> None:
         """ValueError if the table is made for other balls than ``R`` [m], or too narrow for them."""

@@ -52,7 +52,7 @@ def rows_under(conditions: Floats, physics: Physics) -> Floats:
     return rows
 
 
-@entry(what="the solving of aims", uses=(solved_aim,))
+@entry(what="the solving of aims", seconds=15)
 def solve_aims(table, rows, balls, targets, ghosts, strokes, law, aims):
     """Fill the aims (n,), see ``Planner.pot_aim``, of strokes (n, 5) in the positions ``rows`` (n,)."""
     (positions, on_table), (phys, ratios, fidelity, n_steps, most, rails), work = table, law, new_work()

@@ -12,7 +12,6 @@ from .._lib.types import Batches, Bools, Environment, FlagRows, Floats, Integers
 from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
-from ..game.sides import as_visits, strikers_own
 from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.cue_room import EDGE
 from ..physics.table import Table
@@ -158,7 +157,7 @@ class Positions:
         played from where it lies."""
         if not self.of_frames:
             return self
-        game = as_visits(self.game)[:, : columns.VISIT_COLUMNS]
+        game = columns.as_visits(self.game)[:, : columns.VISIT_COLUMNS]
         game[:, columns.STEPS] = 0
         return Positions(self.positions, self.on_table, game, None, self.conditions)
 
@@ -249,7 +248,9 @@ def of_tables(tables: Tables) -> Positions:
         game[:, columns.STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)
     layouts = columns.Layouts(*(each.copy() for each in saved))
-    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts, own)
+    return Positions(
+        tables.positions.copy(), tables.on_table.copy(), columns.strikers_own(game), layouts, own
+    )
 
 
 _One: TypeAlias = Position | Mapping[str, Any]

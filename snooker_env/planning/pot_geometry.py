@@ -95,7 +95,7 @@ def obstructions(at: Positions, rows: Ints, starts: Floats, ends: Floats, ignore
     return out
 
 
-@entry(what="the clear paths of positions", seconds=2, uses=())
+@entry(what="the clear paths of positions", seconds=2)
 def _clear_paths(positions, on_table, game, noses, jaws, clear):
     for k in range(len(clear)):
         p, here = positions[k], on_table[k]

@@ -83,7 +83,7 @@ def _aim(stroke, positions, on_table, pot, law, work):
     stroke[AIM] = solved_aim(positions, on_table, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
-@entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
+@entry(what="the proposals of strokes", seconds=17)
 def _propose(balls, seeds, which, spread, growth, law, strokes, chances):
     """Fill strokes (n, m, 5) at the pots ``which`` (n, m), without rows spread, and chances; ``spread``: at ``POT_SPEED``."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
@@ -198,7 +198,7 @@ def _contacts(balls, seeds, law, safe, strokes, chances):
             stroke[SPEED], stroke[SIDE], stroke[TOP], stroke[AIM] = break_off(p, end_red)
 
 
-@entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
+@entry(what="the escapes of positions", seconds=15)
 def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
     (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))

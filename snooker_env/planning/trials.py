@@ -10,7 +10,6 @@ from .._lib.types import Floats, Ints, Words
 from ..game import frame_columns as columns
 from ..game.balls import N_BALLS
 from ..game.fouls import AUTO
-from ..game.sides import strikers_own
 from ..physics.conditions import END_MASS_RATIO
 from ..physics.cue import squirt
 from ..tasks import stroke
@@ -127,7 +126,8 @@ class FrameTrials(Struck, Frames):
 
 def turn_to_striker(after: Positions) -> Positions:
     """The same positions as their next strikers see them: a copy of the game, the balls are shared."""
-    return Positions(after.positions, after.on_table, strikers_own(after.game), after.saved, after.conditions)
+    game = columns.strikers_own(after.game)
+    return Positions(after.positions, after.on_table, game, after.saved, after.conditions)
 
 
 def packed_under(conditions: Floats, rules: Rules) -> Packed:

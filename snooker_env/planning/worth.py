@@ -13,7 +13,6 @@ from .._lib.jit import entry
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, CUE, N_BALLS, VALUES, available
-from ..game.sides import swap_sides
 from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.stroke import place
 from .positions import Positions
@@ -197,7 +196,7 @@ def pass_after_miss(at: Positions) -> Positions:
     game = left.game
     reds = left.on_table[:, 1:16].any(axis=1)
     game[:, columns.BALL_ON] = np.where(reds, 1, 2 + left.on_table[:, 16:].argmax(axis=1))
-    game[:] = swap_sides(game)
+    game[:] = columns.swap_sides(game)
     game[:, columns.STRIKER] = 0
     for column in (columns.POINTS, columns.FREE_BALL, columns.IN_HAND, columns.ANYWHERE):
         game[:, column] = 0

@@ -10,8 +10,7 @@ import numpy as np
 
 from .._lib.check import integer, number, refuse, refuse_what
 from .._lib.types import Floats, Ints
-from ..game.frame_columns import OPPONENT, Layouts
-from ..game.sides import strikers_own
+from ..game.frame_columns import OPPONENT, Layouts, strikers_own
 from ..planning import Positions
 from ..tasks.frames import Asked, Frames, Opponent
 from ..tasks.options import OPPONENTS, Options

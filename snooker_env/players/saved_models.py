@@ -13,9 +13,9 @@ import numpy as np
 from gymnasium import spaces
 
 from .._lib.check import choice, refuse
+from .._lib.command import say
 from .._lib.files import MOST_JSON, strict_json, unzip
 from .._lib.install import missing
-from .._lib.notices import say
 from .._lib.types import Bools, Ints, Observation
 from ..tasks.foreseen import STATES
 from ..tasks.observations import OBSERVATIONS, STROKE_SIZE, size_of, space

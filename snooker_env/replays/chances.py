@@ -10,7 +10,6 @@ from .._lib.types import Bools, Floats, Ints
 from ..game import frame_columns as columns
 from ..game.balls import BLACK, mask_of_present
 from ..game.frame import Frame, write_frame
-from ..game.sides import swap_sides
 from ..physics import cloth
 from ..planning import Positions
 from ..simulation import Shot
@@ -54,7 +53,7 @@ def positions_of(standings: Sequence[Standing], players: Ints, begun: Ints | Non
         write_frame(one.frame, 0 if begun is None else int(begun[k]), game[k], saved, k)
     present = np.stack([one.on_table for one in standings])
     places = np.where(present[..., None], np.stack([one.positions for one in standings]), 0.0)
-    return Positions(places, present, np.where(players[:, None] == 1, swap_sides(game), game), saved)
+    return Positions(places, present, np.where(players[:, None] == 1, columns.swap_sides(game), game), saved)
 
 
 def standings_of(strokes: Sequence[object]) -> list[Standing]:

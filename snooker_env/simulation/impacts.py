@@ -17,42 +17,35 @@ from ..physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN_IMPACT, Phys
 from .shot import SimulationError
 
 
-@entry(what="the impact of two balls", uses=(contact.collide_balls,))
+@entry(what="the impact of two balls", seconds=10)
 def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
     law = Law(phys, fidelity, n_steps)
     return contact.collide_balls(v1, w1, v2, w2, normal, law, phys[P_E_B], np.empty(WORK))
 
 
-@entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
+@entry(what="the impact with a cushion", seconds=9)
 def _collide_cushion(v, w, normal, phys, fidelity, n_steps):
     e = contact.cushion_restitution(v[0] * normal[0] + v[1] * normal[1], phys)
     return contact.collide_cushion(v, w, normal, Law(phys, fidelity, n_steps), e, np.empty(WORK))
 
 
-@entry
-def _strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t):
-    return strike_ball(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio, e_t)
+_strike_ball = entry(strike_ball)
 
 
 def _unit_normal(normal):
     nx, ny, nz = array("normal", normal, (3,)).tolist()
-    if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
-        length = (nx * nx + ny * ny + nz * nz) ** 0.5
-        allowed = f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})"
-        raise refuse("normal", (nx, ny, nz), allowed)
     size = float(np.hypot(nx, ny))
+    if abs(nz) > 1e-9 or abs(size - 1.0) > 1e-6:
+        allowed = f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {hypot(nx, ny, nz):.7g})"
+        raise refuse("normal", (nx, ny, nz), allowed)
     return nx / size, ny / size
-
-
-def _vector(name, value):
-    most, unit = (FASTEST_IMPACT, "m/s") if name.startswith("v") else (MOST_SPIN_IMPACT, "rad/s")
-    return tuple(array(name, value, (3,), most, unit).tolist())
 
 
 def _solve(kernel, what, before, normal, physics, fidelity) -> Any:
     """Velocities and spins after an impact, of those ``before`` by name; SimulationError if it does not end."""
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = tuple(_vector(name, value) for name, value in before.items())
+    most = {"v": (FASTEST_IMPACT, "m/s"), "w": (MOST_SPIN_IMPACT, "rad/s")}
+    args = tuple(tuple(array(name, x, (3,), *most[name[0]]).tolist()) for name, x in before.items())
     *after, solved = kernel(*args, _unit_normal(normal), physics.packed_for(solver), *solver)
     if not solved:
         words = f"did not end at fidelity {fidelity!r}; try another fidelity"

@@ -48,7 +48,7 @@ def place_of(a, options, anywhere):
     return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
 
 
-@kernel(uses=(aim_along,))
+@kernel
 def _target_line(positions, on_table, on, stroke, law, work):
     """Direction [rad] from which ``aim="target"`` is measured: the widest pot's line, else the first line."""
     lines = work.lines
@@ -59,7 +59,7 @@ def _target_line(positions, on_table, on, stroke, law, work):
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
-@kernel(uses=(_target_line, aim_on))
+@kernel
 def shot_of(a, positions, on_table, on, options, law, work):
     """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     elevation = 0.5 * (a[4] + 1.0) * options[A_ELEVATION] if options[A_ELEVATION] else 0.0

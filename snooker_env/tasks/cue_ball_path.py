@@ -49,7 +49,7 @@ def _moment(motion, state, t0, t1, share, x, y, normal, phys):
     return min(max(t, t0), t1)
 
 
-@kernel(seconds=3, uses=(collide_balls, collide_cushion))
+@kernel
 def _run(positions, on_table, skip, law, work, out):
     """Follow the ball of ``work.motion``, which has just met ball ``skip`` or is it, to where it stops; fills ``out``."""
     phys, motion, state = law.phys, work.motion, work.state
@@ -135,7 +135,7 @@ def _run(positions, on_table, skip, law, work, out):
     out[X], out[Y] = x, y
 
 
-@kernel(seconds=1)
+@kernel
 def _meet(played, ball, positions, cue_law, work, out):
     """The cue ball of a stroke of ``stroke_in_room`` meets ``ball``, past all others: whether, the ball's velocity and spin.
     The cue ball's way begins there; clears ``out`` (SEEN,)."""
@@ -159,7 +159,7 @@ def _meet(played, ball, positions, cue_law, work, out):
     return True, other, spin
 
 
-@kernel(seconds=1, uses=(_meet, _run))
+@kernel
 def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
     """Predict a stroke of ``stroke_in_room`` at a pot, of ball and pocket: fills ``out`` (SEEN,)."""
     phys, (ball, pocket) = cue_law.phys, pot
@@ -176,7 +176,7 @@ def foresee_pot(played, pot, positions, on_table, cue_law, work, out):
     _run(positions, on_table, ball, Law(phys, cue_law.fidelity, cue_law.n_steps), work, out)
 
 
-@kernel(seconds=1, uses=(_meet, _run))
+@kernel
 def foresee_contact(stroke, positions, on_table, cue_law, work, out, its):
     """Predict a stroke (5,) and the first ball in its way, into ``out`` and ``its``; returns that ball, 0 for none."""
     phys, motion, state = cue_law.phys, work.motion, work.state
@@ -229,7 +229,7 @@ def leave(ball, ball_on, positions, on_table, after, there):
     return NONE
 
 
-@entry(what="the paths of cue balls", seconds=2, uses=(foresee_pot,))
+@entry(what="the paths of cue balls", seconds=18)
 def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
     """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
     ``errors`` (k, 5): fills ``out`` (n k, SEEN) and ``left``: positions, on_table, the ball on or ``NONE`` after the pot."""
@@ -255,7 +255,7 @@ def is_fair(ball, touching, on):
     return ball > 0 and not (touching >> ball) & 1 and (touching & on != 0 or (on >> ball) & 1 != 0)
 
 
-@entry(what="the paths of both balls", seconds=2, uses=(foresee_contact,))
+@entry(what="the paths of both balls", seconds=18)
 def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
     """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5):
     fills ``out`` (n k, 2, SEEN), of the cue ball and the ball it meets, and ``left``: positions, that ball, whether fair."""

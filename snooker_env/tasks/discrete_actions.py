@@ -65,7 +65,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 
-@kernel(seconds=1, uses=(aim_on,))
+@kernel
 def solve_choice(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke

@@ -166,7 +166,7 @@ def find_escapes(positions, on_table, on, lines, first):
     return count
 
 
-@kernel(seconds=1, uses=(collide_cushion,))
+@kernel
 def _succeeds(aim, stroke, positions, on_table, on, law, work):
     """Whether the cue ball meets a ball on first, by the engine's models, and no pocket's mouth before."""
     phys, motion, state, R = law.phys, work.motion, work.state, law.phys[P_R]
@@ -206,7 +206,7 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
     return False
 
 
-@kernel(uses=(_succeeds,))
+@kernel
 def escape_aim(about, stroke, positions, on_table, on, law, work):
     """Direction [rad] in which the stroke meets a ball on: the middle of the widest, nearest window about ``about``, or that itself."""
     best, low, high = 0.0, about, about

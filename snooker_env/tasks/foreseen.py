@@ -10,8 +10,8 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from .._lib.types import Floats
 from ..game import frame_columns as columns
+from ..game import pots as direct_pots
 from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits, next_on_kernel, touching_balls
-from ..game.open_runs import MOST_RUNS, RUN_COLUMNS, list_runs, pots_along
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from ..physics.parameters import Physics
@@ -74,14 +74,14 @@ def _observe_path_into(row, seen):
 def _judge(ball_on, left, many, law, errors, desk, one):
     """What the table on the desk leaves to whoever is next, with ``many`` open runs; returns its worth [points]."""
     usual = Spread(errors.cores[-1], errors.lapse, errors.factor)
-    found = pots_along(desk.runs, many, desk.after, desk.there, BALL_RADIUS, desk.pots)
+    found = direct_pots.pots_along(desk.runs, many, desk.after, desk.there, BALL_RADIUS, desk.pots)
     table = desk.after, desk.there, left, usual, RULE_OF_THUMB, law.rails, desk.chances
     worth, one[F_BEST], one[F_SECOND] = worth_of_pots(desk.pots, found, *table)
     one[F_PROSPECTS] = worth / MOST_WORTH
     return worth
 
 
-@kernel(seconds=1, uses=(aim_from, foresee_pot))
+@kernel
 def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     """The strokes at a row of ``find_pots``, into their ``rows``."""
     ball, pocket, seen, rails = int(pot[POT_BALL]), int(pot[POT_POCKET]), desk.seen, law.rails
@@ -93,7 +93,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
     if free:
         ball_on = 0 if row[columns.BALL_ON] == 1 else row[columns.BALL_ON]
     left, on = points_left(desk.there, ball_on), balls_on_kernel(ball_on, bits(desk.there))
-    many = list_runs(desk.after, desk.there, on, BALL_RADIUS, desk.runs)
+    many = direct_pots.list_runs(desk.after, desk.there, on, BALL_RADIUS, desk.runs)
     ghost, target = (pot[GHOST_X], pot[GHOST_Y]), (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y])
     aim, length = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0]), length_of(positions, pot)
     speeds = errors.cores.shape[0] - 1
@@ -127,7 +127,7 @@ def _foresee_pots(pot, positions, on_table, row, law, errors, work, desk, rows):
         one[F_PROMISE] = chance * (points + worth) / MOST_PROMISE
 
 
-@kernel(seconds=1, uses=(foresee_contact,))
+@kernel
 def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, desk, one):
     """The stroke on the desk along a line without a pot, into its row; in a frame with what it leaves the other player."""
     seen, its, after, there = desk.seen, desk.its, desk.after, desk.there
@@ -147,7 +147,7 @@ def _foresee_line(room, positions, on_table, on, in_frame, law, errors, work, de
     if ball:
         after[ball, 0], after[ball, 1], there[ball] = its[path.X], its[path.Y], its[path.LOST] == 0.0
     ball_on = next_on_kernel(bits(there) & ~1)
-    many = list_runs(after, there, balls_on_kernel(ball_on, bits(there)), BALL_RADIUS, desk.runs)
+    many = direct_pots.list_runs(after, there, balls_on_kernel(ball_on, bits(there)), BALL_RADIUS, desk.runs)
     _judge(ball_on, points_left(there, ball_on), many, law, errors, desk, one)
 
 
@@ -158,11 +158,7 @@ def _repeat_last(rows, many, size):
         rows[c] = rows[many - size + (c - many) % size] if c % STROKE_SIZE != F_THERE else 0.0
 
 
-@entry(
-    what="what is foreseen of strokes",
-    seconds=4,
-    uses=(aim_on, _foresee_pots, _foresee_line, menu.safe_stroke),
-)
+@entry(what="what is foreseen of strokes", seconds=30)
 def foresee(which, at, player, tables, rules, errors, out):
     """What ``player`` foresees on the tables ``which``, into the rows ``at`` of ``out``, which hold the flat observation.
     ``rules``: the code of the rule set, cues and constants, one row or one a table, fidelity."""
@@ -172,7 +168,7 @@ def foresee(which, at, player, tables, rules, errors, out):
     along, at_pots = speeds * len(menu.TOPS), speeds * menu.PER_SPEED
     strokes = at_pots + (menu.SAFETIES if in_frame else 0)
     choices, state = strokes + (menu.DECISIONS if in_frame else 0), STATES[1 if in_frame else 0]
-    table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_), np.empty((MOST_RUNS, RUN_COLUMNS))
+    table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_), np.empty(direct_pots.RUNS)
     wide = np.empty((_LEFT, POT_COLUMNS)), np.empty(0), np.empty(len(menu.TOPS))
     desk = Desk(np.empty(path.SEEN), np.empty(path.SEEN), np.zeros(5), *table, *wide)
     for j in range(which.shape[0]):

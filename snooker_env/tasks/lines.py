@@ -112,7 +112,7 @@ def _add_thin(positions, on_table, lines, window, count):
     return count
 
 
-@kernel(uses=(find_escapes,))
+@kernel
 def find_lines(positions, on_table, on, rows, safe):
     """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS) or, of a ``safe`` stroke, up to ``SAFE_LINES``: thin
     contacts before full ones, at the edges of all windows. Returns the number, >= 1."""
@@ -162,7 +162,7 @@ def aim_at_ball(aim, stroke, positions, on_table, law, work):
     return swerved_aim(aim, far, stroke, positions, on_table, law, work)
 
 
-@kernel(uses=(escape_aim,))
+@kernel
 def aim_along(line, stroke, positions, on_table, on, law, work):
     """Direction [rad] of the stroke (speed, side, top, elevation) along a row of ``find_lines``."""
     if line[LINE_SPEED] == 0.0:
@@ -170,14 +170,14 @@ def aim_along(line, stroke, positions, on_table, on, law, work):
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)
 
 
-@kernel(uses=(find_escapes,))
+@kernel
 def list_lines(positions, on_table, on, rows):
     """Write the lines to choose from, as ``find_lines``: direct pots, else others; their number, and whether they are pots."""
     many = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS])
     return (many, True) if many else (find_lines(positions, on_table, on, rows, False), False)
 
 
-@kernel(uses=(solved_aim, aim_along))
+@kernel
 def aim_on(k, pots, stroke, positions, on_table, on, law, work):
     """Direction [rad] of the stroke (speed, side, top, elevation) on line ``k`` of ``list_lines``, in ``work.lines``."""
     line = work.lines[k]

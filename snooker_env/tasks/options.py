@@ -354,7 +354,7 @@ class Options:
         if observed and not drawn:
             allowed = 'must be False with conditions="fixed": there is nothing to observe'
             raise refuse("observe_conditions", True, allowed)
-        for end in (conditions.LOW, conditions.HIGH) if drawn else ():
+        for end in zip(*conditions.RANGES.values(), strict=True) if drawn else ():
             try:
                 physics_with(physics, end).check_stopping()
             except ValueError as error:

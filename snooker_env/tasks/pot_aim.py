@@ -146,7 +146,7 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
     return aim
 
 
-@kernel(seconds=5, uses=(collide_balls,))
+@kernel
 def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, law, work):
     """``solved_aim``, sought from the direction ``begin`` on [rad], and the stroke as ``stroke_in_room``. ``effort``: how far the
     ball may pass the target [rad], by how much the cue may turn at the same elevation [rad], the most trials."""
@@ -194,7 +194,7 @@ def aim_from(begin, effort, positions, on_table, ball, target, ghost, stroke, la
     return best, found
 
 
-@kernel(uses=(aim_from,))
+@kernel
 def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
     """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised as needed."""
     line = atan2(ghost[1] - positions[0, 1], ghost[0] - positions[0, 0])

@@ -157,11 +157,7 @@ def row_of(k, rows):
     return min(k, rows.shape[0] - 1)
 
 
-@entry(
-    what="the strokes of the environment",
-    seconds=3,
-    uses=(discrete_actions.solve_choice, solve_menu_stroke, shot_of),
-)
+@entry(what="the strokes of the environment", seconds=23)
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables

@@ -47,7 +47,7 @@ def menu_stroke(index, speeds):
     return line, speed, 0.0, TOPS[along % len(TOPS)]
 
 
-@kernel(seconds=1, uses=(lines.aim_along,))
+@kernel
 def safe_stroke(safety, end_red, rows, positions, on_table, on, law, work):
     """(speed, side, top, direction) of the ``safety``, along ``rows`` of ``find_lines``; the break-off is the first."""
     if safety == 0 and end_red > 0:
@@ -59,7 +59,7 @@ def safe_stroke(safety, end_red, rows, positions, on_table, on, law, work):
     return speed, side, top, aim
 
 
-@kernel(seconds=1, uses=(lines.aim_on, safe_stroke))
+@kernel
 def solve_menu_stroke(index, speeds, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of the choice ``index``; of one that is not there, along the last line that is."""
     safety = min(index - speeds * PER_SPEED, SAFETIES - 1)

@@ -315,7 +315,7 @@ class Tables(ABC):
     def physics_of(self, k: int) -> Physics:
         """The constants of table k."""
         physics = self.rules.physics
-        return physics_with(physics, self.conditions[k]) if self.rules.drawn else physics
+        return physics_with(physics, tuple(self.conditions[k].tolist())) if self.rules.drawn else physics
 
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""

@@ -9,7 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.physics import conditions
 from snooker_env.physics.conditions import NAMES, RANGES
-from snooker_env.physics.parameters import nominal
+from snooker_env.physics.parameters import nominal, physics_with
 from snooker_env.planning import Planner, Positions, Strokes
 from tests.processes import ROOT
 from tests.refusals import refuse_each
@@ -29,8 +29,8 @@ def of_state(env):
 
 
 def test_a_draw_is_uniform_within_the_ranges_and_by_the_seed():
-    rng = np.random.default_rng(3)
-    many = [sn.Physics.sample(rng, "match") for _ in range(400)]
+    drawn = conditions.draw_constants(np.random.default_rng(3).random((400, conditions.COLUMNS)))
+    many = [physics_with(sn.Physics.preset("match"), tuple(values)) for values in drawn.tolist()]
     for name, (low, high) in RANGES.items():
         if name == "mu_bb_scale":
             values = np.array([one.friction_law[0] for one in many]) / sn.physics.parameters.MARLOW[0]
@@ -44,10 +44,7 @@ def test_a_draw_is_uniform_within_the_ranges_and_by_the_seed():
         assert np.histogram(shares, 10, (0.0, 1.0))[0].min() > 15, name
     values = np.array([[one.mu_s, one.mu_r, one.e_b, one.mu_c, one.e_c] for one in many])
     assert np.abs(np.corrcoef(values.T) - np.eye(5)).max() < 0.2  # independent
-    again = sn.Physics.sample(np.random.default_rng(3), "match")
-    assert again == many[0] != many[1] and again.e_c_knee == 2.02 and not again.tables
-    with pytest.raises(ValueError, match=r"^rng = 3: must be"):
-        sn.Physics.sample(3)
+    assert many[0] != many[1] and many[0].e_c_knee == 2.02 and not many[0].tables
 
 
 def test_the_ranges_and_their_order_are_those_of_the_page():

@@ -21,12 +21,13 @@ def table(*places):
     return lie(dict(enumerate(places, start=1)))
 
 
-def test_a_full_d_and_wrong_input_are_refused():
+def test_a_full_d_and_wrong_input_are_refused(monkeypatch):
     rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)]
-    with pytest.raises(ValueError, match="free place"):
-        place_cue(*table(*rows[:17], *rows[18:22]), 0.0, -1.1, radius=0.08)
     with pytest.raises(ValueError, match="x = nan"):
         place_cue(*table(), np.nan, 0.0)
+    monkeypatch.setattr(in_hand, "BALL_RADIUS", 0.08)
+    with pytest.raises(ValueError, match="free place"):
+        place_cue(*table(*rows[:17], *rows[18:22]), 0.0, -1.1)
 
 
 def strewn(rng, number, low, high):

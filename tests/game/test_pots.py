@@ -5,7 +5,7 @@ import numpy as np
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import N_BALLS, mask_of
-from snooker_env.game.open_runs import MOST_RUNS, RUN_COLUMNS, list_runs, pots_along
+from snooker_env.game.pots import RUNS, list_runs, pots_along
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.kernels import entry
 
@@ -88,7 +88,7 @@ def test_pots_along_runs_are_those_that_are_found_bit_for_bit():
     for k in range(40):
         positions, on_table = tables.tables.positions[k].copy(), tables.tables.on_table[k].copy()
         on = mask_of(np.flatnonzero(on_table[1:] & (rng.random(N_BALLS - 1) < 0.7)) + 1)
-        runs = np.empty((MOST_RUNS, RUN_COLUMNS))
+        runs = np.empty(RUNS)
         many = _list(positions, on_table, on, runs)
         for most in (4, 16) * 10:
             positions[0] = rng.uniform(-0.95, 0.95, 2) * (HALF_WIDTH, HALF_LENGTH)

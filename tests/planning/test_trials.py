@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from snooker_env.game import frame_columns as columns
-from snooker_env.game.sides import swap_sides
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.trials import FrameTrials, turn_to_striker
 from snooker_env.players import Strokes
@@ -78,7 +77,7 @@ def test_a_trial_leads_to_what_the_frame_itself_would(miss, cue):
 
 def turned_to(game, striker):
     """Rows of frames with ``striker`` (n,) as player 0."""
-    return np.where(striker[:, None] == 1, swap_sides(game), game)
+    return np.where(striker[:, None] == 1, columns.swap_sides(game), game)
 
 
 def test_in_a_visit_it_scores_as_the_planner_says():

@@ -6,7 +6,7 @@ import os
 import pytest
 from numba.core import event
 
-from snooker_env._lib import cache, jit, notices
+from snooker_env._lib import cache, jit
 from tests.processes import ROOT, python
 
 HIDES = "SNOOKER_ENV_QUIET=1 hides this)"
@@ -14,29 +14,19 @@ AHEAD = f"python -m snooker_env warmup compiles everything ahead; {HIDES}\n"
 TOY = """
 from snooker_env._lib.jit import entry, kernel
 
-@kernel(seconds=7)
-def large(x):
+@kernel
+def inner(x):
     return 2.0 * x
 
-@kernel(seconds=2, uses=(large,))
-def larger(x):
-    return large(x) + 1.0
-
-@entry(what="one toy", uses=(larger,))
+@entry(what="one toy", seconds=9)
 def one(x):
-    return larger(x)
-
-@entry(what="another toy", seconds=3, uses=(larger, large))
-def another(x):
-    return larger(x)
+    return inner(x) + 1.0
 
 @entry
 def small(x):
     return x
 
-@entry(what="a toy that only needs others", uses=(larger,))
-def rest(x):
-    return larger(x)
+another = entry(inner, what="another toy", seconds=3)
 """
 
 
@@ -57,11 +47,10 @@ def toys(tmp_path):
 
 
 def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
-    """What large kernels cost is said where they are compiled: with the first that uses them."""
-    code = "small(1.0); one(1.0); one(2.0); another(1.0); rest(1.0)"
+    code = "small(1.0); one(1.0); one(2.0); another(1.0)"
     costs = ("one toy", 9), ("another toy", 3)
     lines = [
-        f"snooker_env: compiling {what} to machine code, once, about {s} s {toys.kept}{AHEAD}"
+        f"snooker_env: compiling {what} to machine code, once, up to {s} s {toys.kept}{AHEAD}"
         for what, s in costs
     ]
     assert toys(code) == "".join(lines)
@@ -74,7 +63,7 @@ def test_it_can_be_silenced_and_says_that_it_is_not_kept(toys):
         assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
     hidden = f"(for this process only; {AHEAD}"
     line = toys("one(1.0)", NUMBA_CACHE_DIR="/dev/null", warn="ignore")
-    assert line == f"snooker_env: compiling one toy to machine code, about 9 s {hidden}"
+    assert line == f"snooker_env: compiling one toy to machine code, up to 9 s {hidden}"
 
 
 @pytest.mark.parametrize(
@@ -86,11 +75,11 @@ def test_without_stderr_it_works_all_the_same(toys, without):
 
 def test_a_warm_up_that_no_terminal_shows_says_each_kernel(toys):
     code = (
-        "from snooker_env._lib.notices import warming_up\nsmall(1.0)\n"
-        "with warming_up([small, one, another, rest], print): one(1.0); rest(1.0); another(1.0)"
+        "from snooker_env._lib.jit import warming_up\nsmall(1.0)\n"
+        "with warming_up([small, one, another], print): one(1.0); another(1.0)"
     )
     costs = ("one toy", 9), ("another toy", 3)
-    told = (f"compiling {what} to machine code, once, about {s} s {toys.kept}{HIDES}" for what, s in costs)
+    told = (f"compiling {what} to machine code, once, up to {s} s {toys.kept}{HIDES}" for what, s in costs)
     assert toys(code).splitlines() == [f"snooker_env: {line}" for line in told]
     assert toys(code) == ""
     assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
@@ -99,8 +88,8 @@ def test_a_warm_up_that_no_terminal_shows_says_each_kernel(toys):
 def test_on_a_terminal_a_warm_up_is_a_bar(capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
     seen, kernel = [], jit.entry(what="a toy", seconds=3)(lambda x: x)
-    with notices.warming_up([kernel], lambda ready, many: seen.append((ready, many))):
-        monkeypatch.setattr(notices.sys.stderr, "isatty", lambda: True, raising=False)
+    with jit.warming_up([kernel], lambda ready, many: seen.append((ready, many))):
+        monkeypatch.setattr(jit.sys.stderr, "isatty", lambda: True, raising=False)
         event.start_event("numba:compile", data={"dispatcher": kernel})
         assert capsys.readouterr().err == "" and seen == [(0, 1)]
         kernel(1.0)
@@ -119,16 +108,12 @@ planning.learned.stroke_policy _add_pots; planning.trials _strike; planning.pot_
 
 def test_each_long_kernel_announces_itself_and_what_others_compile_is_not_told(capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
-    # as if nothing had been compiled yet
-    monkeypatch.setattr(
-        notices.Cost, "_missing", lambda self: set(self.uses).union(*(k.cost._missing() for k in self.uses))
-    )
     for module, *names in (line.split() for line in LONG.replace("\n", ";").split(";") if line):
         for name in names:
             kernel = getattr(importlib.import_module(f"snooker_env.{module}"), name)
             event.start_event("numba:compile", data={"dispatcher": kernel})
             err = capsys.readouterr().err
-            assert err.count("\n") == 1 and f"compiling {kernel.cost.what} to machine code, " in err
+            assert err.count("\n") == 1 and f"compiling {kernel.notice[0]} to machine code, " in err
             assert kernel in jit.ENTRIES
     event.start_event("numba:compile", data={"dispatcher": sorted})
     event.start_event("numba:compile")

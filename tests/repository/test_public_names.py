@@ -56,7 +56,7 @@ def private(source):
 
 TRAINED_FOR = """
 benchmark.luck_counter; benchmark.playing; benchmark.provenance; benchmark.results; benchmark.schema: faults_of_fields;
-benchmark.statistics; benchmark.tasks; game.layouts: plan_of; players; planning.learned; planning.worth; game.sides: strikers_own;
+benchmark.statistics; benchmark.tasks; game.layouts: plan_of; players; planning.learned; planning.worth;
 game: frame_columns; tasks.frames; players.saved_models; tasks.threads
 """
 

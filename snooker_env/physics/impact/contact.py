@@ -173,7 +173,7 @@ def _add(a, b):
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@kernel(seconds=2, uses=(solve,))
+@kernel
 def collide_balls(v1, w1, v2, w2, normal, law, e, series):
     """Impact of two equal balls -> v1, w1, v2, w2 [m/s, rad/s] and whether it was solved. [MJP14] 2.1 to 2.4.
 
@@ -195,7 +195,7 @@ def collide_balls(v1, w1, v2, w2, normal, law, e, series):
     return _to_table(vc, nx, ny), _to_table(wc, nx, ny), _to_table(vo, nx, ny), _to_table(wo, nx, ny), solved
 
 
-@kernel(seconds=1, uses=(solve,))
+@kernel
 def collide_from_above(vc, wc, vo, wo, normal, law, e, series):
     """Impact of a ball C in the air with a ball O on the bed -> v and w of C, of O, the impulse of friction between them that
     presses O into the bed [m/s], and whether it was solved.
@@ -245,7 +245,7 @@ def collide_from_above(vc, wc, vo, wo, normal, law, e, series):
     )
 
 
-@kernel(seconds=1, uses=(solve,))
+@kernel
 def collide_cushion(v, w, normal, law, e, series):
     """Impact of a ball with a nose -> v [m/s], w [rad/s], solved. [MJP10], with Coulomb's law at zero slip.
 

@@ -280,7 +280,7 @@ def _bound_step(h, start, s, mode, cloth, outlook, limits, contact):
     return h
 
 
-@kernel(seconds=8)
+@kernel
 def solve(problem, accuracy, series):
     """Integrate one impact, its closing speed 1: the impulses at its end, and OK or TOO_MANY_STEPS."""
     order = accuracy.order

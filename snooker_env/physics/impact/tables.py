@@ -96,7 +96,7 @@ def look_up(phys, at, x):
     return True, Impulses(f1, lane(friction, 1), g1, lane(friction, 3), p, 0.0, 0.0)
 
 
-@entry(what="the tables of rolling impacts", seconds=4, uses=(solve,))
+@entry(what="the tables of rolling impacts", seconds=12)
 def _solutions(x, rolling, out):
     """The impulses of each x = a1 / closing at ``reference`` -> out (m, 5); NaN where the ball lifts.
 
