@@ -71,7 +71,11 @@ def tell_frame(
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """A frame that is over, the person's side first, and the person's strokes in it. ``same``: nobody else sat there before."""
     sides, played = (seat, 1 - seat), [session.acts[k] for k in session.strokes]
-    fair = same and (session.game, session.options.layout) == ("snooker", "break_off") and opponent in BY_NAME
+    fair = (
+        same
+        and (session.options.game, session.options.layout) == ("snooker", "break_off")
+        and opponent in BY_NAME
+    )
     for act in played if fair else ():  # the strokes of a rated frame
         noise = RATED_WITH if act.player == seat else BY_NAME[opponent].noise
         fair &= (act.asked["cue"], act.asked["practice"], act.asked["noise"]) == ("real", False, noise)

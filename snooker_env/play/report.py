@@ -3,6 +3,7 @@
 from typing import Any
 
 from ..advice import POCKET_WORDS
+from ..game.balls import CUE, NAMES
 from ..game.frame import Frame
 from ..game.rule_sets import RULES
 from ..geometry import POCKET_AIMS, POCKETS
@@ -20,7 +21,7 @@ from .session import Act
 
 MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
-IN_SESSION = ("begun", "practice", "game", "cue", "breaks", "hints", "undone")
+IN_SESSION = ("begun", "practice", "cue", "breaks", "hints", "undone")
 
 
 def scene(service: Service) -> dict[str, Any]:
@@ -64,10 +65,11 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
     """An act in a sentence, after the foul that it answers."""
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
-        nominated = f" ({act.detail} nominated)" if act.detail else ""
+        named = act.asked["nominate"]
+        nominated = f" ({NAMES[named]} nominated)" if named > CUE else ""
         return f"{who}{nominated}: {sentence(act.played, labels)}"
     foul = "" if act.answers is None or act.answers.played is None else last_words(act.answers, labels)
-    return f"{foul} {_SAID[act.detail or act.what].format(who)}".strip()
+    return f"{foul} {_SAID[act.asked.get('choice', act.what)].format(who)}".strip()
 
 
 def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
@@ -94,7 +96,7 @@ def report(service: Service) -> dict[str, Any]:
     state = table_after(act, labels, service.win_chances([act])[0])
     table, noise = session.tables.rules.table, session.noise[frame.striker]
     turn, lines = report_turn(frame, session.position, table, noise)
-    state |= turn | {name: getattr(session, name) for name in IN_SESSION}
+    state |= turn | {name: getattr(session, name) for name in IN_SESSION} | {"game": frame.rules}
     by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
     visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
     state |= {

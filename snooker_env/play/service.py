@@ -20,14 +20,13 @@ from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
 from ..players import Player, Strokes, player
 from ..players.cue_stroke import cue_strokes
-from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
 from .levels import BY_NAME
 from .person import Person, tell_frame
-from .session import DECLINED, Act, Session
+from .session import Act, Session, nominable
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
@@ -365,9 +364,8 @@ class Service:
                     (stroke,) = cue_strokes(decided, session.position)
                     if session.frame.in_hand and np.isfinite(decided.place[0]).all():
                         session.place(*decided.place[0].tolist())
-                    nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
-                    sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
-                    session.play(stroke, nominated=nominated if sensible else AUTO)
+                    named, open_to = int(decided.nominate[0]), nominable(session.frame)
+                    session.play(stroke, nominated=named if named in open_to else AUTO)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""

@@ -15,7 +15,7 @@ from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
-from snooker_env.play.grid import STEP
+from snooker_env.play.session import STEP
 from snooker_env.players import Strokes, player
 from snooker_env.players.table_report import find_lines
 from snooker_env.simulation import SimulationError
@@ -321,7 +321,7 @@ def deciding(game, position, *, striker=1, **says):
 )
 def test_an_agent_decides_after_a_foul(game, decision, what, striker):
     state, acts, agent = deciding(game, COVERED, striker=0, decision=[decision])
-    choices = [act.detail for act in game.session.acts if act.what == "choice"]
+    choices = [act.asked["choice"] for act in game.session.acts if act.what == "choice"]
     assert choices == [what] and agent.saw[0].choice.tolist() == [True]
     assert agent.saw[0].scores.tolist() == [[7, 0]]
     assert striker is None or state["striker"] == striker
@@ -330,7 +330,9 @@ def test_an_agent_decides_after_a_foul(game, decision, what, striker):
 
 def test_an_agent_nominates_concedes_and_claims(game):
     _, acts, _ = deciding(game, COVERED, nominate=[PINK])
-    assert acts[-1] == "stroke" and game.session.acts[-1].detail == "pink"  # the blue is struck first
+    assert (
+        acts[-1] == "stroke" and game.session.acts[-1].asked["nominate"] == PINK
+    )  # the blue is struck first
     assert game.session.frame.scores == (6, 0)
     state, acts, _ = deciding(game, COVERED, declare=[CONCEDES])
     assert acts[-1] == "concede" and state["winner"] == 0

@@ -10,8 +10,7 @@ from snooker_env.advice import CueStroke
 from snooker_env.game.balls import CUE
 from snooker_env.game.frame_columns import STROKES
 from snooker_env.planning import Position
-from snooker_env.play.grid import STEP, numbers_of, stroke_of
-from snooker_env.play.session import STATE, Session
+from snooker_env.play.session import STATE, STEP, Session, numbers_of, stroke_of
 from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from tests.playing import COVERED, EASY
 
