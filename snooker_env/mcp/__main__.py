@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from .._lib.check import refuse
 from .._lib.command import exit_code
 from ..benchmark.tasks import TASKS
-from .games import FreeGame, JudgedGame
-from .server import TRACKS, Desk, serve
+from .server import TRACKS, Desk, FreeGame, JudgedGame, serve
 
 NAME = "python -m snooker_env mcp"
 VISITS = 50  # tables of a result unless it is said otherwise

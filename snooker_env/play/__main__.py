@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import secrets
 import sys
 import webbrowser
 from pathlib import Path
@@ -37,7 +38,6 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     file = Path(folder).expanduser() / "snooker_env" / "person.json"
     person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
     add("--person", type=Path, default=file, metavar="FILE", help=person)
-    add("--position", type=Path, metavar="FILE", help="begin with this position (JSON)")
     add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
     add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
@@ -45,16 +45,12 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
 
 
 def service_of(args: argparse.Namespace) -> "Service":
-    import numpy as np
-
-    from ..planning.position import Position
     from ..players.resolver import players_of
-    from .levels import BY_NAME, USUAL
-    from .person import Person
+    from .person import BY_NAME, USUAL, Person
     from .service import PERSON, Seats, Service
     from .session import Session
 
-    seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
+    seed = secrets.randbits(62) if args.seed is None else args.seed
     session = Session(layout=args.layout, seed=seed, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
     players = players_of(args.agent, args.trust, options_of_words(args.options))
@@ -62,8 +58,6 @@ def service_of(args: argparse.Namespace) -> "Service":
     seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), USUAL)])
     session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
-    if args.position is not None:
-        session.set_up(Position.load(args.position))
     return Service(session, seats, Person(args.person))
 
 

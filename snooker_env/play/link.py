@@ -77,10 +77,10 @@ def write_link(session: Session) -> str:
     return urlsafe_b64encode(whole + zlib.crc32(whole).to_bytes(TAIL, "big")).decode().rstrip("=")
 
 
-def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
-    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here.
-    ``agreed``: nobody may have changed errors or cue on the way, or practised."""
-    first, digits = _read_link(session, link)
+def open_link(session: Session, link: object, shared: Sequence[Act] | None = None) -> None:
+    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here. ``shared``: in
+    a game by link, what was played of it here; then nobody may have changed errors or cue on the way, or practised."""
+    (first, digits), agreed = _read_link(session, link), shared is not None
     with session.as_a_whole():
         session.load(first)
         if agreed and session.practice:
@@ -99,15 +99,12 @@ def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
         if digits.number:
             raise refuse_what("link", "more after its last act", "must end with it")
         session.noise, session.practice, session.cue = list(first["noise"]), first["practice"], first["cue"]
-
-
-def check_course(played: Sequence[Act], acts: Sequence[Act]) -> None:
-    """ValueError unless a game by link that is opened again begins with what was ``played`` of it here."""
-    if not played or played[0].state["stream"][0] != acts[0].state["stream"][0]:
-        return  # another game
-    same = played[0].state == acts[0].state and len(played) <= len(acts)
-    if not same or any(one.asked != other.asked for one, other in zip(played[1:], acts[1:], strict=False)):
-        raise refuse_what("link", "an older or different game", "must begin with what was played of it here")
+        if shared and shared[0].state["stream"][0] == first["state"]["stream"][0]:  # the same game
+            both = shared, session.acts[: len(shared)]
+            here, there = ([acts[0].state, *(act.asked for act in acts)] for acts in both)
+            if here != there:
+                allowed = "must begin with what was played of it here"
+                raise refuse_what("link", "an older or different game", allowed)
 
 
 def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[str, Any]) -> dict[str, Any]:

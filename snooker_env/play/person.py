@@ -1,22 +1,43 @@
-"""What does a person's own file hold? Frames against the agents, and the strokes that the coach reads. It is read before each
-use and written whole, so two servers may share it. One that is not sound is an error, and never written over."""
+"""Against whom does a person play, and what does the person's own file hold? Frames against the agents, and the strokes that the
+coach reads. It is read before each use and written whole, so two servers may share it. One that is not sound is an error."""
 
 import json
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
+from .._lib.types import NoiseName
 from ..advice import Recorded, strokes_of
-from .levels import BY_NAME
 from .session import Session
 
 EMPTY: dict[str, Any] = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
 MOST_STROKES, MOST_NAME = 600, 40
 RATED_WITH = "amateur"  # the person's errors in frames that are rated
 PLACE = ("cue", "physics", "table")  # what strokes must share to be read by the coach together
+
+
+class Level(NamedTuple):
+    """An opponent: the agent that plays as it, with whose errors, how it plays in a line, and its measured strength."""
+
+    name: str
+    agent: str
+    noise: NoiseName
+    style: str
+    elo: int  # docs/play/page.md says how it was measured; the first has 1000
+
+
+LEVELS = (
+    Level("Pip", "ghost_ball", "beginner", "quick: plays the easiest pot at once, and often misses it", 1000),
+    Level("Walter", "tactician_500", "club", "safe: leaves you little, and waits for your mistakes", 1921),
+    Level("Rosa", "search_2000", "amateur", "bold: goes for every pot, and for the break", 2148),
+    Level("Mia", "tactician_30", "professional", "quick: considers few strokes, but hits them well", 2587),
+    Level("Vera", "tactician_500", "professional", "safe: weighs pots and safeties, and seldom errs", 2693),
+)
+BY_NAME = {level.name: level for level in LEVELS}
+USUAL = "Walter"  # who plays against a person unless someone is named
 
 
 class Person:

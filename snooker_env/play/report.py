@@ -15,7 +15,7 @@ from ..replays.encode import encode_stroke
 from ..replays.referee_words import ERRORS, sentence
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.options import CUES
-from .levels import LEVELS
+from .person import LEVELS
 from .service import LINKED, PERSON, Service
 from .session import Act
 

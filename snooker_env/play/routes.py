@@ -16,7 +16,6 @@ from ..advice.review import SAMPLES, read_frame
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
-from ..game.frame import CHOICES
 from ..geometry import POCKETS
 from ..physics.engine import EventKind
 from ..planning.position import Position
@@ -28,7 +27,7 @@ from ..simulation.shot import Shot
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from .link import check_course, open_link, write_link
+from .link import open_link, write_link
 from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report, table_after
 from .service import LINKED, Reviewing, Service, StaleError
 from .session import Session, read_levels
@@ -146,11 +145,10 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
         integer("seat", seat, 0, 1)
     with service.acting(pause=True, anew=True) as session:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
-        open_link(session, fields.get("link"), agreed=by_link)
+        open_link(session, fields.get("link"), played if by_link else None)
         if not by_link:
             service.seats.share_no_more()
             return
-        check_course(played, session.acts)
         if seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
             seat = frame.striker if frame.phase != "over" or last is None else 1 - last
@@ -162,14 +160,11 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
         errors = _errors(fields, 200, seats.level(session))
-        session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        decided = None
         if session.frame.phase == "choice":
-            decided = CHOICES[int(seats.decide(agent, session).decision[0])]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
-        told = {"agent": agent, "order": advice.order, "noise": advice.noise, "choice": decided}
+        told = {"agent": agent, "order": advice.order, "noise": advice.noise}
         told["suggestions"] = [_draw_suggestion(session, one) for one in advice]
     with service.reading() as now:
         seat = session.frame.striker
@@ -189,8 +184,6 @@ def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
     """The stroke without execution errors, on a copy of the table."""
     twin = session.twin()
     twin.noise = ["none", "none"]
-    if stroke.place is not None:
-        twin.place(*stroke.place)
     played = twin.play(stroke).played
     assert played is not None
     return played.shot

@@ -24,8 +24,7 @@ from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
-from .levels import BY_NAME
-from .person import Person, tell_frame
+from .person import BY_NAME, Person, tell_frame
 from .session import Act, Session, nominable
 
 PERSON = "person"  # who sits at the page of the host

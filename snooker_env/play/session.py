@@ -189,9 +189,9 @@ class Session:
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
-        stroke = stroke_of(numbers_of(stroke))
         if self.frame.in_hand and self.frame.phase == "stroke":
-            self.place(*self.tables.positions[0, CUE].tolist())
+            self.place(*(stroke.place or self.tables.positions[0, CUE].tolist()))
+        stroke = stroke_of(numbers_of(stroke))
         frame, tables, before = self.frame, self.tables, self.state
         if frame.phase != "stroke":
             choose = 'must be "stroke": choose first (play, play_again, replace or anywhere)'

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from snooker_env.play import server as module
-from snooker_env.play.levels import USUAL
+from snooker_env.play.person import USUAL
 from snooker_env.play.routes import GET, POST
 from snooker_env.play.service import FRIEND, PERSON, WATCHER
 from tests.playing import EASY, STRAIGHT, refused, served
