@@ -6,15 +6,16 @@ import secrets
 import sys
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from .._lib.check import integer
 from .._lib.command import stop_with_reader
 from ..players.model_options import add_model_options, options_of_words
-
-if TYPE_CHECKING:
-    from .server import PlayServer
-    from .service import Service
+from ..players.resolver import players_of
+from .person import BY_NAME, USUAL, Person
+from .routes import GET, POST, answer
+from .server import PlayServer
+from .service import PERSON, Seats, Service
+from .session import Session
 
 PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
 
@@ -44,12 +45,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def service_of(args: argparse.Namespace) -> "Service":
-    from ..players.resolver import players_of
-    from .person import BY_NAME, USUAL, Person
-    from .service import PERSON, Seats, Service
-    from .session import Session
-
+def service_of(args: argparse.Namespace) -> Service:
     seed = secrets.randbits(62) if args.seed is None else args.seed
     session = Session(layout=args.layout, seed=seed, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
@@ -61,10 +57,8 @@ def service_of(args: argparse.Namespace) -> "Service":
     return Service(session, seats, Person(args.person))
 
 
-def warm_up(service: "Service") -> None:
+def warm_up(service: Service) -> None:
     """Compile the kernels of strokes and questions, so that nobody waits in the middle of a game."""
-    from .routes import GET, POST, answer
-
     if service.session.frame.phase == "stroke":
         answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
         for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
@@ -72,10 +66,8 @@ def warm_up(service: "Service") -> None:
     answer(service, GET["state"], {})
 
 
-def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":
+def _server(service: Service, port: int | None, host: str | None = None) -> PlayServer:
     """The server on a port; by default ``PORT``, where a browser finds its settings again, or any if that is taken."""
-    from .server import PlayServer
-
     if port is not None:
         return PlayServer(service, integer("port", port, 0, 65535), host)
     try:
@@ -84,7 +76,7 @@ def _server(service: "Service", port: int | None, host: str | None = None) -> "P
         return PlayServer(service, 0, host)
 
 
-def _invite(server: "PlayServer") -> None:
+def _invite(server: PlayServer) -> None:
     """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
     print("Addresses for the same network. Nothing is encrypted, so use a network that you trust:\n")
     for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):

@@ -91,42 +91,43 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
 
 
 def report(service: Service) -> dict[str, Any]:
-    session, seats, labels = service.session, service.seats, service.labels
-    frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
-    state = table_after(act, labels, service.win_chances([act])[0])
-    table, noise = session.tables.rules.table, session.noise[frame.striker]
-    turn, lines = report_turn(frame, session.position, table, noise)
-    state |= turn | {name: getattr(session, name) for name in IN_SESSION} | {"game": frame.rules}
-    by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
-    visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
-    state |= {
-        "revision": service.revision,
-        "thinking": service.thinking,
-        "trouble": service.trouble,
-        "players": seats.seen_by(service.me),
-        "labels": list(labels),
-        "advisers": seats.advisers(session.practice),
-        "level": seats.level(session),
-        "noise": list(session.noise),
-        "choice_wins": service.choice_chances(),
-        "paused": host and service.paused and service.agent_to_play(),
-        "strokes": len(session.strokes),
-        "undo": host and session.at > 1 and not by_link,
-        "redo": host and session.at < len(session.acts),
-        "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
-    }
-    if service.agent_to_play():
-        waits = "is waiting: press Continue." if host else "is waiting."
-        waits = waits if service.paused else "is thinking."
-        state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
-    if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
-        state["words"] = "It is your friend's turn: send the link."
-    elif by_link and act.what == "new":
-        state["last"] = "New frame. Play first, then send your friend the link."
-    fair = act.played is not None and not (act.played.fouls or act.played.points)
-    if fair and state["snookered"]:
-        state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
-    if state["phase"] == "over":
-        state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
-    said = [state["last"], state["words"], say_score(state, labels)]
-    return state | {"text": say_table(state, lines, said)}
+    with service.reading() as session:
+        seats, labels = service.seats, service.labels
+        frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
+        state = table_after(act, labels, service.win_chances([act])[0])
+        table, noise = session.tables.rules.table, session.noise[frame.striker]
+        turn, lines = report_turn(frame, session.position, table, noise)
+        state |= turn | {name: getattr(session, name) for name in IN_SESSION} | {"game": frame.rules}
+        by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
+        visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
+        state |= {
+            "revision": service.revision,
+            "thinking": service.thinking,
+            "trouble": service.trouble,
+            "players": seats.seen_by(service.me),
+            "labels": list(labels),
+            "advisers": seats.advisers(session.practice),
+            "level": seats.level(session),
+            "noise": list(session.noise),
+            "choice_wins": service.choice_chances(),
+            "paused": host and service.paused and service.agent_to_play(),
+            "strokes": len(session.strokes),
+            "undo": host and session.at > 1 and not by_link,
+            "redo": host and session.at < len(session.acts),
+            "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
+        }
+        if service.agent_to_play():
+            waits = "is waiting: press Continue." if host else "is waiting."
+            waits = waits if service.paused else "is thinking."
+            state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
+        if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
+            state["words"] = "It is your friend's turn: send the link."
+        elif by_link and act.what == "new":
+            state["last"] = "New frame. Play first, then send your friend the link."
+        fair = act.played is not None and not (act.played.fouls or act.played.points)
+        if fair and state["snookered"]:
+            state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
+        if state["phase"] == "over":
+            state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
+        said = [state["last"], state["words"], say_score(state, labels)]
+        return state | {"text": say_table(state, lines, said)}

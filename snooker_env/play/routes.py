@@ -34,7 +34,7 @@ from .session import Session, read_levels
 
 
 class Route(NamedTuple):
-    """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
+    """What answers a route, with JSON types, and the fields a request may have."""
 
     handler: Callable[[Service, dict[str, Any]], Any]
     fields: tuple[str, ...] = ()
@@ -73,15 +73,13 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if strikes:
             session.play(take_stroke(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
-    with service.reading():
-        return {"stroke": struck, "state": report(service)}
+    return {"stroke": struck, "state": report(service)}
 
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
         place = list(session.place(*read_place("place", fields.get("place"))))
-    with service.reading():
-        return {"place": place, "state": report(service)}
+    return {"place": place, "state": report(service)}
 
 
 def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
@@ -97,11 +95,11 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
+def _move(service: Service, fields: dict[str, Any], acts: int) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people, before = not all(map(service.seats.is_agent, (0, 1))), session.at
-        while move(session) and people and service.agent_to_play():
+        while session.go_to(session.at + acts) and people and service.agent_to_play():
             pass
         session.undone += session.at < before
 
@@ -116,8 +114,8 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
             service.seats.share(0, noise)
-        elif (before := service.seats.share_no_more()) is not None:
-            session.noise[:] = before
+        else:
+            session.noise[:] = service.seats.share_no_more(noise)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -147,7 +145,7 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
         open_link(session, fields.get("link"), played if by_link else None)
         if not by_link:
-            service.seats.share_no_more()
+            service.seats.share_no_more(noise)
             return
         if seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
@@ -257,7 +255,7 @@ def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     return found.to_dict() | {"text": str(found)}
 
 
-def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
+def _replay(service: Service) -> Replay:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
         labels, judge = service.labels, service.judge()
@@ -265,7 +263,7 @@ def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], A
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
     title = f"{labels[0]} - {labels[1]}"
-    return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
+    return Replay(strokes, title=title, players=labels, judge=judge, luck=luck)
 
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -278,7 +276,7 @@ def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
             advisers = service.seats.advisers(practice=False)
             agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
             people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
-            frame = read_frame(_replay(service, {}, Replay.to_dict))
+            frame = read_frame(_replay(service).to_dict())
             errors = _errors(fields, SAMPLES, service.seats.level(session))
             service.reviewing = Reviewing(session, frame, people, agent=agent, **errors)
     return service.own_review().report()
@@ -312,8 +310,8 @@ GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "replay": Route(partial(_replay, form=Replay.to_dict)),
-    "replay.html": Route(partial(_replay, form=Replay.html)),
+    "replay": Route(lambda service, fields: _replay(service).to_dict()),
+    "replay_page": Route(lambda service, fields: {"html": _replay(service).html()}),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision"), True),
@@ -324,8 +322,8 @@ POST: dict[str, Route] = {
     "destinations": Route(_destinations, (*STROKE, *ERRORS), True),
     "room": Route(_room, (*STROKE, "revision"), True),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
-    "undo": Route(partial(_move, move=Session.undo)),
-    "redo": Route(partial(_move, move=Session.redo)),
+    "undo": Route(partial(_move, acts=-1)),
+    "redo": Route(partial(_move, acts=1)),
     "new": Route(_new, ("layout", "seed", "breaker", "game", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
@@ -356,7 +354,4 @@ def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
         reply = route.handler(service, dict(fields))
     except StaleError:
         return {"stale": True}
-    if reply is not None:
-        return reply
-    with service.reading():
-        return report(service)
+    return report(service) if reply is None else reply

@@ -41,9 +41,8 @@ class Seats:
     who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
-        self.players: dict[str, Player] = dict(agents)
-        for name in OFFERED:
-            self.players.setdefault(name, player(name))
+        own = {name: player(name) for name in OFFERED if name not in agents}
+        self.players: dict[str, Player] = {**agents, **own}
         self.opponents: list[str] = [*agents, *BY_NAME]  # for the menu
         for level in BY_NAME.values():
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
@@ -84,11 +83,10 @@ class Seats:
             self._before = self.who, noise
         self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
 
-    def share_no_more(self) -> list[NoiseName] | None:
-        """Those who sat here before a game by link come back; returns their errors. None: there was no such game."""
-        if LINKED not in self.who:
-            return None
-        self.who, noise = self._before
+    def share_no_more(self, noise: list[NoiseName]) -> list[NoiseName]:
+        """Those who sat here before a game by link come back; returns their errors, or ``noise`` if there was no such game."""
+        if LINKED in self.who:
+            self.who, noise = self._before
         return noise
 
     def seen_by(self, me: str) -> list[str]:

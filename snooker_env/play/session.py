@@ -206,14 +206,15 @@ class Session:
         kept = list[Played]()
         meant = {**stroke.to_dict(), "place": before["positions"][CUE] if frame.in_hand else None}
         asked = {**meant, "noise": self.noise[striker], "practice": self.practice, "cue": self.cue}
-        asked["nominate"] = nominated
+        asked |= {"nominate": nominated}
         tables.nominated[0] = nominated
         crew = Crew(self._buffers, lambda k, buffers, j, agents: kept.append(tables.record(k, buffers, j)))
         luck = self._luck(actions, striker)
         tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         played = replace(kept[0], before=frame, meant=meant)
-        if self.practice:
-            self._hand_back()
+        if self.practice and self.frame.phase != "over" and self.frame.striker == 1:
+            after = self.frame.choose("play_again") if self.frame.phase == "choice" else self.frame
+            self._write(replace(after, striker=0))
         self._settle(before["positions"])
         return self._did(Act("stroke", self.state, striker, played, asked, luck))
 
@@ -230,14 +231,6 @@ class Session:
 
         first = luck_of(self.tables, np.zeros(1, np.int64), turn, expect_win(self.options_with(errors)))
         return float(first[0] if striker == 0 else -first[0])
-
-    def _hand_back(self):
-        frame = self.frame
-        if frame.phase == "over" or frame.striker == 0:
-            return
-        if frame.phase == "choice":
-            frame = frame.choose("play_again")
-        self._write(replace(frame, striker=0))
 
     def choose(self, what: str) -> Act:
         """Take the decision after a foul of the opponent: "play", "play_again", or after a miss "replace"."""
@@ -284,13 +277,6 @@ class Session:
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
         self._set(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         self._did(Act("set_up", self.state))
-
-    def undo(self) -> bool:
-        return self.go_to(self.at - 1)
-
-    def redo(self) -> bool:
-        """Do the act again that was undone last; returns whether there was one, as ``undo``."""
-        return self.go_to(self.at + 1)
 
     def go_to(self, at: int, acts: Sequence[Act] = ()) -> bool:
         """The game as it stood before act ``at``, of these acts if there are any; returns whether there is such a place."""
