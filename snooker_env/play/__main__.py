@@ -8,7 +8,7 @@ import webbrowser
 from pathlib import Path
 
 from .._lib.check import integer
-from .._lib.command import stop_with_reader
+from .._lib.command import exit_code
 from ..players.model_options import add_model_options, options_of_words
 from ..players.resolver import players_of
 from .person import BY_NAME, USUAL, Person
@@ -17,6 +17,7 @@ from .server import PlayServer
 from .service import PERSON, Seats, Service
 from .session import Session
 
+NAME = "snooker_env.play"
 PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
 
 
@@ -49,8 +50,7 @@ def service_of(args: argparse.Namespace) -> Service:
     seed = secrets.randbits(62) if args.seed is None else args.seed
     session = Session(layout=args.layout, seed=seed, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
-    players = players_of(args.agent, args.trust, options_of_words(args.options))
-    agents = dict(zip(shown, players, strict=True))
+    agents = dict(zip(shown, players_of(args.agent, args.trust, options_of_words(args.options)), strict=True))
     seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), USUAL)])
     session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
@@ -68,11 +68,11 @@ def warm_up(service: Service) -> None:
 
 def _server(service: Service, port: int | None, host: str | None = None) -> PlayServer:
     """The server on a port; by default ``PORT``, where a browser finds its settings again, or any if that is taken."""
-    if port is not None:
-        return PlayServer(service, integer("port", port, 0, 65535), host)
     try:
-        return PlayServer(service, PORT, host)
+        return PlayServer(service, PORT if port is None else integer("port", port, 0, 65535), host)
     except ValueError:
+        if port is not None:
+            raise
         return PlayServer(service, 0, host)
 
 
@@ -87,35 +87,36 @@ def _invite(server: PlayServer) -> None:
     print()
 
 
-@stop_with_reader()
 def main(argv: list[str] | None = None) -> int:
-    args = _arguments(argv)
-    try:
-        service = service_of(args)
-        server = _server(service, args.port, args.host)
-        print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
-        warm_up(service)
-    except (ValueError, OSError, OverflowError) as error:
-        print(f"snooker_env.play: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("snooker_env.play: interrupted", file=sys.stderr)
-        return 130
-    try:
-        print(f"Snooker is played at\n\n    {server.address}\n")
-        if args.host is not None:
-            _invite(server)
-        print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.")
-        sys.stdout.flush()
-        if not args.no_browser and not webbrowser.open(server.address):
-            print(f"No browser was found. Open {server.address} in one.", flush=True)
-        server.serve_forever(poll_interval=0.2)
-    except KeyboardInterrupt:
-        print()
-    finally:
-        service.close()
-        server.server_close()
-    return 0
+    """Serve until Ctrl-C. Exit code 0; 2: wrong arguments; 130: Ctrl-C while it starts."""
+
+    def run() -> int:
+        args = _arguments(argv)
+        try:
+            service = service_of(args)
+            server = _server(service, args.port, args.host)
+            print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
+            warm_up(service)
+        except (ValueError, OSError, OverflowError) as error:
+            print(f"{NAME}: {error}", file=sys.stderr)
+            return 2
+        try:
+            print(f"Snooker is played at\n\n    {server.address}\n")
+            if args.host is not None:
+                _invite(server)
+            print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.")
+            sys.stdout.flush()
+            if not args.no_browser and not webbrowser.open(server.address):
+                print(f"No browser was found. Open {server.address} in one.", flush=True)
+            server.serve_forever(poll_interval=0.2)
+        except KeyboardInterrupt:
+            print()
+        finally:
+            service.close()
+            server.server_close()
+        return 0
+
+    return exit_code(NAME, run)
 
 
 if __name__ == "__main__":

@@ -140,7 +140,7 @@ def test_with_host_the_command_prints_an_address_for_each_person_and_a_qr_code(m
 WRONG = """
 --layout x | layout = 'x'
 --agent nobody | player = 'nobody'
---options aim=target | options = {{'aim': 'target'}}: must be left out
+--options aim=target | options = {'aim': 'target'}: must be left out
 --host 198.51.100.1 | host = '198.51.100.1': must be an IPv4 address of this machine
 --host ::1 | host = '::1': must be an IPv4 address of this machine
 --port 99999 | port = 99999: must be an integer in [0, 65535]
