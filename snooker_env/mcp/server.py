@@ -151,8 +151,8 @@ class FreeGame:
         """What the page advises here, in lines."""
         if not self.advice:
             raise refuse("advice", False, "must be allowed by new_game: this game is played without")
-        found = answer(self._service, POST["advise"], {"n": integer("n", n, 1, MOST_ADVICE)})
-        strokes = found["suggestions"]
+        asked = {"n": integer("n", n, 1, MOST_ADVICE)}
+        strokes = answer(self._service, POST["advise"], asked)["suggestions"]
         fields = [{name: one[name] for name in STROKE if one.get(name) is not None} for one in strokes]
         lines = [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
         return "\n".join(lines)
@@ -272,8 +272,8 @@ class Desk:
                 "advice": {"type": "boolean", "description": "whether advise may be called (default: no)"},
             }
             self.tools["new_game"] = Tool("Start a frame, or practice alone.", fields, self._new)
-            advises = Tool("Say what an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
-            self.tools["advise"] = advises
+            advised = {"n": _up_to(MOST_ADVICE, 3)}
+            self.tools["advise"] = Tool("Say what an agent would play here.", advised, self._advise)
 
     def answer(self, name: str, arguments: Fields) -> tuple[str, bytes | None, bool]:
         """Words, a picture, and whether the call was refused; if so, the words say why, and nothing has changed."""
@@ -352,7 +352,6 @@ class _Reader:
             raise ValueError(str(error).removeprefix("player menu: act(...) returned ")) from None
 
     def act(self, observations: Floats, masks: Bools, seeds: Ints) -> list[int]:
-        """The number, once it is known to be on the menu."""
         self.row, (self.there,) = observations[0], masks
         number = integer("number", self.number, 0, len(self.there) - 1)
         if not self.there[number]:

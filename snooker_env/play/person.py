@@ -5,7 +5,7 @@ import json
 from collections.abc import Callable
 from datetime import date
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from .._lib.check import integer, refuse, truth
 from .._lib.files import MOST_JSON, read_bytes, strict_json, write_atomic
@@ -13,6 +13,7 @@ from .._lib.types import NoiseName
 from ..advice import Recorded, strokes_of
 from .session import Session
 
+Change: TypeAlias = Callable[[dict[str, Any]], object]  # of what the file holds
 EMPTY: dict[str, Any] = {"format": "snooker-person", "version": 1, "name": "", "frames": [], "strokes": []}
 MOST_STROKES, MOST_NAME = 600, 40
 RATED_WITH = "amateur"  # the person's errors in frames that are rated
@@ -57,7 +58,7 @@ class Person:
             raise refuse("person", str(self.path), why) from None
         return kept
 
-    def change(self, how: Callable[[dict[str, Any]], object] | None) -> None:
+    def change(self, how: Change | None) -> None:
         """Change what the file holds, check it, and write it whole; None removes the file."""
         kept = self.read()
         if how is not None:
@@ -73,13 +74,6 @@ class Person:
             allowed = f"must be a file that can be written ({error.strerror})"
             raise refuse("person", str(self.path), allowed) from None
 
-    def keep(self, frame: dict[str, Any], strokes: list[dict[str, Any]]) -> None:
-        def add(kept: dict[str, Any]) -> None:
-            kept["frames"] = [*kept["frames"], frame]
-            kept["strokes"] = [*kept["strokes"], *strokes][-MOST_STROKES:]
-
-        self.change(add)
-
     def strokes(self) -> list[Recorded]:
         """The strokes that share cue, constants and table with the last one."""
         kept = self.read()["strokes"]
@@ -87,10 +81,8 @@ class Person:
         return [Recorded.from_dict(one) for one in same]
 
 
-def tell_frame(
-    session: Session, seat: int, opponent: str, *, same: bool
-) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """A frame that is over, the person's side first, and the person's strokes in it. ``same``: nobody else sat there before."""
+def tell_frame(session: Session, seat: int, opponent: str, *, same: bool) -> Change:
+    """Adds a frame that is over, the person's side first, and the person's strokes in it. ``same``: nobody else sat there."""
     sides, played = (seat, 1 - seat), [session.acts[k] for k in session.strokes]
     fair = (
         same
@@ -113,7 +105,12 @@ def tell_frame(
     }
     any_own = any(act.player == seat for act in played)
     mine = strokes_of([act.played for act in played], player=seat) if any_own else []
-    return frame, [one.to_dict() for one in mine]
+
+    def add(kept: dict[str, Any]) -> None:
+        kept["frames"] = [*kept["frames"], frame]
+        kept["strokes"] = [*kept["strokes"], *(one.to_dict() for one in mine)][-MOST_STROKES:]
+
+    return add
 
 
 def _check(kept: dict[str, Any]) -> None:

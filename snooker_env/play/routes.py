@@ -377,13 +377,13 @@ def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _replay(service: Service) -> Replay:
     with service.reading() as session:
-        strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels, judge = service.labels, service.judge()
-        luck = session.luck if judge is not None and any(session.luck) else None
+        acts, labels, judge = session.acts[: session.at], service.labels, service.judge()
+        strokes = [act.played for act in acts if act.played is not None]
+        known = [act.luck for act in acts if act.played is not None]
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
-    title = f"{labels[0]} - {labels[1]}"
-    return Replay(strokes, title=title, players=labels, judge=judge, luck=luck)
+    luck = known if judge is not None and any(known) else None
+    return Replay(strokes, title=" - ".join(labels), players=labels, judge=judge, luck=luck)
 
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:

@@ -29,8 +29,8 @@ from .routes import GET, POST, answer, parts_of
 from .service import ASKING, FRIEND, PERSON, WATCHER, BusyError, Service
 
 WEB = Path(__file__).with_name("web")
-SCRIPTS = ("table.js", *sorted(path.name for path in WEB.glob("*.js")))
-FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
+FILES = {"": "text/html", "play.css": "text/css", "table.js": "text/javascript"}
+FILES |= {path.name: "text/javascript" for path in WEB.glob("*.js")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
 IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
@@ -78,13 +78,10 @@ class PlayHandler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer an error that ``http.server`` itself finds, as one JSON error."""
         self.close_connection = True
-        words = message or "not a request that can be answered"
-        self._refuse(RefusedError(405 if code == 501 else code, words))
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("do_"):  # any method: the same checks refuse it, after the token
-            return self._serve
-        raise AttributeError(name)
+        if code == 501:
+            self._refuse(RefusedError(405, "the method must be GET or POST", Allow="GET, POST"))
+        else:
+            self._refuse(RefusedError(code, message or "not a request that can be answered"))
 
     def handle_one_request(self) -> None:
         """Handle one request; then the connection waits again."""
@@ -123,6 +120,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         except SimulationError as error:
             self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
 
+    do_GET = do_POST = _serve  # noqa: N815
+
     def _check_request(self) -> tuple[str, dict[str, Any]]:
         """The path after the token and the query, of a valid request."""
         head = self.headers
@@ -149,8 +148,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         if not self.who:
             raise RefusedError(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
-        if self.command not in ("GET", "POST"):
-            raise RefusedError(405, "the method must be GET or POST", Allow="GET, POST")
         known = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
         if name not in known[self.command]:
             other = next((method for method, names in known.items() if name in names), None)

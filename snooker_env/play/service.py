@@ -38,8 +38,6 @@ OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # age
 class Seats:
     """The two seats, and the players that may take them: ``agents`` by name, ``OFFERED``, the levels, and ``friends``."""
 
-    who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
-
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
         own = {name: player(name) for name in OFFERED if name not in agents}
         self.players: dict[str, Player] = {**agents, **own}
@@ -47,7 +45,7 @@ class Seats:
         for level in BY_NAME.values():
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.persons: list[str] = [PERSON, *[FRIEND] * friends]
-        self.who = [PERSON, PERSON]
+        self.who: list[str] = [PERSON, PERSON]  # or ``FRIEND``, ``LINKED`` or the name of an agent
         # who sat here before a game by link, and their errors
         self._before: tuple[list[str], list[NoiseName]] = list(self.who), []
 
@@ -215,8 +213,7 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: also in an agent's turn; ``anew``:
-        another game begins."""
+        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: not mine alone; ``anew``: another game."""
         with self.reading(revision) as session:
             if not (any_turn or anew):
                 self.check_turn()
@@ -306,9 +303,8 @@ class Service:
                 people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
                 dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
                 if len(people) == 1 and dealt and not session.practice:
-                    same = len(self._sat) == 1
-                    told = tell_frame(session, people[0], seats.who[1 - people[0]], same=same)
-                    self._unwritten = partial(person.keep, *told)
+                    other, same = seats.who[1 - people[0]], len(self._sat) == 1
+                    self._unwritten = partial(person.change, tell_frame(session, people[0], other, same=same))
             if self._unwritten is not None:
                 self._unwritten()
                 self._unwritten, self.unkept = None, ""

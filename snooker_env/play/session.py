@@ -1,6 +1,5 @@
-"""What is the game on the page? A list of acts, in which undo and redo move. The state after each holds the random stream, so a
-stroke that is played again meets the same execution errors. Strokes are rounded before they are played, and places after them, to
-a grid of whole multiples of powers of two: a table on it is the same on every machine, bit for bit."""
+"""What is the game on the page? A list of acts, each with the table and the random stream after it. Strokes are rounded before they
+are played, and places after them, to whole multiples of powers of two: a table on this grid is the same on every machine."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -125,10 +124,6 @@ class Session:
     @property
     def strokes(self) -> list[int]:
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
-
-    @property
-    def luck(self) -> list[float]:
-        return [self.acts[k].luck for k in self.strokes]
 
     @property
     def position(self) -> Positions:
@@ -268,10 +263,9 @@ class Session:
         if position.over:
             raise refuse("over", True, "must be false: there is no stroke to play")
         positions, on_table, _ = position.arrays()
-        scores = tuple(scores) if isinstance(scores, list) else scores
-        game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
-        game |= {"break_points": position.points, "in_hand": position.in_hand}
-        game |= {"on_table": mask_of_present(on_table) & ~1}
+        game: Any = {"scores": tuple(scores) if isinstance(scores, list) else scores, "striker": striker}
+        game |= {"breaker": striker, "free_ball": free_ball, "break_points": position.points}
+        game |= {"in_hand": position.in_hand, "on_table": mask_of_present(on_table) & ~1}
         rules: Any = {"miss": self.options.miss, "rules": self.options.game}
         frame = Frame(**game, **rules, ball_on=BallOn[str(position.on).upper()])
         state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
