@@ -104,8 +104,7 @@ def main(argv: list[str] | None = None) -> int:
             print(f"Snooker is played at\n\n    {server.address}\n")
             if args.host is not None:
                 _invite(server)
-            print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.")
-            sys.stdout.flush()
+            print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server.", flush=True)
             if not args.no_browser and not webbrowser.open(server.address):
                 print(f"No browser was found. Open {server.address} in one.", flush=True)
             server.serve_forever(poll_interval=0.2)

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, truth
 from .._lib.types import CueKind
-from ..advice import POCKET_WORDS, CueStroke, Suggestion, advise, coach, destinations
+from ..advice import POCKET_WORDS, CueStroke, advise, coach, destinations
 from ..advice.review import SAMPLES, read_frame
 from ..advice.room import room_for
 from ..game.balls import CUE, NAMES
@@ -145,8 +145,7 @@ def report(service: Service) -> dict[str, Any]:
             "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
         }
         if service.agent_to_play():
-            waits = "is waiting: press Continue." if host else "is waiting."
-            waits = waits if service.paused else "is thinking."
+            waits = "is waiting for Continue." if service.paused else "is thinking."
             state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
         if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
             state["words"] = "It is your friend's turn: send the link."
@@ -282,20 +281,17 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
-        told = {"agent": agent, "order": advice.order, "noise": advice.noise}
-        told["suggestions"] = [_draw_suggestion(session, one) for one in advice]
-    with service.reading() as now:
+        suggestions = []
+        for one in advice:
+            balls = ("ball", one.ball), ("first", one.first)
+            names = {key: NAMES[k] if k >= 0 else None for key, k in balls}
+            names |= {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+            suggestions.append(one.to_dict() | names | _paths(_play_exactly(session, one.stroke)))
+    with service.reading(_revision(fields)) as now:  # a hint that comes too late does not count
         seat = session.frame.striker
-        shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
-        if shown and not now.practice and seats.who[seat] == service.me:
+        if now.begun == session.begun and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
-    return told
-
-
-def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
-    names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
-    names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-    return one.to_dict() | names | _paths(_play_exactly(session, one.stroke))
+    return {"agent": agent, "order": advice.order, "noise": advice.noise, "suggestions": suggestions}
 
 
 def _play_exactly(session: Session, stroke: CueStroke) -> Shot:

@@ -59,8 +59,7 @@ class Seats:
         return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
-        """The errors of both in advice and the chance to win: the largest of the persons' who play, else of the agents'. A
-        person without errors counts as an amateur, and nobody as better than a professional: so learned the tactician."""
+        """The errors of both in advice and chances: the largest of the persons' who play, else of the agents' (``common_noise``)."""
         seats = range(1 if session.practice else 2)
         people = [seat for seat in seats if not self.is_agent(seat)]
         errors = [LEVELS[session.noise[seat]] for seat in people or seats]
