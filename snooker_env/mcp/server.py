@@ -164,9 +164,6 @@ class _Client(ProgramPlayer):
     def _stroke(self, at: Positions, seed: int) -> Any:
         return self._read(self.fields, at, "play")
 
-    def told(self, at: Positions) -> dict[str, Any]:
-        return self._state(begun(at))
-
 
 class JudgedGame:
     """The first tables of a task, one visit each in their order; a result file holds what was played."""
@@ -196,7 +193,7 @@ class JudgedGame:
         if at is None:
             words = f"All {done} tables are played."
             return {"phase": "over", "words": words, "text": words, "balls_on": [], "positions": {}}
-        state = self._decide.player.told(at)  # type: ignore[attr-defined]
+        state = self._decide.player._state(begun(at))  # type: ignore[attr-defined]
         where = f"Table {done + 1} of {len(self._seeds)}: {self._task.title}."
         return state | {"words": f"{where} {state['words']}", "text": f"{where}\n{state['text']}"}
 

@@ -59,10 +59,9 @@ def service_of(args: argparse.Namespace) -> Service:
 
 def warm_up(service: Service) -> None:
     """Compile the kernels of strokes and questions, so that nobody waits in the middle of a game."""
-    if service.session.frame.phase == "stroke":
-        answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
-        for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
-            service.seats.decide(name, service.session.twin())
+    answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
+    for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
+        service.seats.decide(name, service.session.twin())
     answer(service, GET["state"], {})
 
 

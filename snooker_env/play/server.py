@@ -154,8 +154,11 @@ class PlayHandler(BaseHTTPRequestHandler):
             if other is None:
                 raise RefusedError(404, "there is nothing of that name")
             raise RefusedError(405, f"the method must be {other}", Allow=other)
-        friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
-        if self.command == "POST" and self.who != PERSON and not friendly:
+        if (
+            self.command == "POST"
+            and self.who != PERSON
+            and not (self.who == FRIEND and POST[name[4:]].friend)
+        ):
             raise RefusedError(403, "the host alone may do this")
         if "Transfer-Encoding" in head:
             raise RefusedError(411, "a body must come with its Content-Length")
@@ -172,11 +175,10 @@ class PlayHandler(BaseHTTPRequestHandler):
         return self.connection.getsockname()[0].startswith("127.")
 
     def _query(self, text: str) -> dict[str, Any]:
-        pairs = parse_qsl(text, keep_blank_values=True)
         if text and self.command == "POST":
             raise RefusedError(400, "POST must have its fields in its body, not in its address")
         fields: dict[str, Any] = {}
-        for name, value in pairs:
+        for name, value in parse_qsl(text, keep_blank_values=True):
             if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
             is_number = re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value)
@@ -184,22 +186,22 @@ class PlayHandler(BaseHTTPRequestHandler):
         return fields
 
     def _body(self) -> dict[str, Any]:
-        length = self.headers.get_all("Content-Length") or []
-        if not length or length == ["0"]:  # as ``curl -X POST`` sends it
+        length = self.headers.get("Content-Length")
+        if length is None or length == "0":  # as ``curl -X POST`` sends it
             # there might be a body without a known end
-            self.close_connection = self.close_connection or not length
+            self.close_connection = self.close_connection or length is None
             return {}
-        if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
-            raise RefusedError(411, "must be one number of bytes", "Content-Length", ", ".join(length))
-        if int(length[0]) > MOST_BODY:
-            raise RefusedError(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length[0]))
+        if not re.fullmatch(r"\d{1,12}", length):
+            raise RefusedError(411, "must be one number of bytes", "Content-Length", length)
+        if int(length) > MOST_BODY:
+            raise RefusedError(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length))
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         if kind != "application/json":
             raise RefusedError(415, "must be application/json", "Content-Type", kind)
         self.server.waiting[self.connection] = True, monotonic()
-        raw = self.rfile.read(int(length[0]))
+        raw = self.rfile.read(int(length))
         self.server.waiting.pop(self.connection, None)
-        if len(raw) < int(length[0]):
+        if len(raw) < int(length):
             raise RefusedError(400, "the body ended before its Content-Length")
         try:
             return read_object(raw)
