@@ -44,7 +44,6 @@ class Digits:
         self.base: int = 1
 
     def within(self, low: int, high: int, value: int = 0) -> int:
-        """An integer in [low, high]."""
         base = high - low + 1
         if self.reads:
             self.number, digit = divmod(self.number, base)
@@ -145,7 +144,7 @@ def _do(session: Session, digits: Digits, asked: dict[str, Any]) -> None:
     else:
         noise, session.practice, session.cue = (asked[name] for name in SETTING)
         session.noise[session.frame.striker] = noise
-        if (place := asked["place"]) is not None and list(session.place(*place)) != place:
+        if (place := asked["place"]) is not None and session.place(*place) != place:
             raise refuse("place", place, "must be free for the cue ball in hand")
         stroke = CueStroke.of({name: asked[name] for name in STROKE})
         played, tables = session.play(stroke, nominated=asked["nominate"]), session.tables

@@ -103,8 +103,7 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
 def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
     """The table and the scoreboard after an act; ``win_chance``: of seat 0."""
     frame, table = Frame.from_dict(act.state["frame"]), (act.state["positions"], act.state["on_table"])
-    own = {"win_chance": win_chance, "last": last_words(act, labels)}
-    return report_game(frame, *table, labels) | own
+    return report_game(frame, *table, labels) | {"win_chance": win_chance, "last": last_words(act, labels)}
 
 
 def stroke_report(service: Service, k: int) -> dict[str, Any]:
@@ -197,7 +196,7 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = list(session.place(*read_place("place", fields.get("place"))))
+        place = session.place(*read_place("place", fields.get("place")))
     return {"place": place, "state": report(service)}
 
 
@@ -228,13 +227,10 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
     if not isinstance(fields.get("layout", ""), str):
         raise refuse("layout", fields["layout"], "must be the name of a layout")
     with service.acting(anew=True) as session:
-        noise = list(session.noise)
         session.new(**fields)
+        session.noise[:] = service.seats.share(0 if by_link else None, list(session.noise))
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
-            service.seats.share(0, noise)
-        else:
-            session.noise[:] = service.seats.share_no_more(noise)
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -263,10 +259,7 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, anew=True) as session:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
         open_link(session, fields.get("link"), played if by_link else None)
-        if not by_link:
-            service.seats.share_no_more(noise)
-            return
-        if seat is None:  # who opens it is not who played last
+        if by_link and seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
             seat = frame.striker if frame.phase != "over" or last is None else 1 - last
         service.seats.share(seat, noise)

@@ -154,11 +154,8 @@ class PlayHandler(BaseHTTPRequestHandler):
             if other is None:
                 raise RefusedError(404, "there is nothing of that name")
             raise RefusedError(405, f"the method must be {other}", Allow=other)
-        if (
-            self.command == "POST"
-            and self.who != PERSON
-            and not (self.who == FRIEND and POST[name[4:]].friend)
-        ):
+        friendly = self.who == FRIEND and self.command == "POST" and POST[name[4:]].friend
+        if self.command == "POST" and self.who != PERSON and not friendly:
             raise RefusedError(403, "the host alone may do this")
         if "Transfer-Encoding" in head:
             raise RefusedError(411, "a body must come with its Content-Length")

@@ -74,16 +74,13 @@ class Seats:
     def is_agent(self, seat: int) -> bool:
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
-    def share(self, seat: int, noise: list[NoiseName]) -> None:
-        """The person plays this seat, and a friend by link the other; ``noise``: the errors of those who sat there."""
-        if LINKED not in self.who:
-            self._before = self.who, noise
-        self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
-
-    def share_no_more(self, noise: list[NoiseName]) -> list[NoiseName]:
-        """Those who sat here before a game by link come back; returns their errors, or ``noise`` if there was no such game."""
-        if LINKED in self.who:
+    def share(self, seat: int | None, noise: list[NoiseName]) -> list[NoiseName]:
+        """A person with these errors plays a seat, and a friend by link the other; None: back to who sat here before, and errs so."""
+        if seat is None and LINKED in self.who:
             self.who, noise = self._before
+        elif seat is not None:
+            self._before = self._before if LINKED in self.who else (self.who, noise)
+            self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
         return noise
 
     def seen_by(self, me: str) -> list[str]:
@@ -277,10 +274,9 @@ class Service:
 
     def go_on(self) -> None:
         with self._changed:
-            if not self.paused:
-                return  # it is thinking already: another page was first
-            self.paused, self.trouble = False, ""
-            self._announce()
+            if self.paused:  # else it is thinking already: another page was first
+                self.paused, self.trouble = False, ""
+                self._announce()
 
     def agent_to_play(self) -> bool:
         frame = self.session.frame

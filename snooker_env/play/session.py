@@ -245,7 +245,7 @@ class Session:
         """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
         return self._decide("claim", self.frame.claim(), {"declare": "claim"})
 
-    def place(self, x: float, y: float) -> tuple[float, float]:
+    def place(self, x: float, y: float) -> list[float]:
         """Put the cue ball in hand on the free place nearest to (x, y), of the D or of the table, and return it."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
@@ -254,8 +254,7 @@ class Session:
         places[CUE] = place_cue(places, self.tables.on_table[0], x, y, anywhere=frame.anywhere)
         self._put(CUE)
         self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
-        px, py = places[CUE].tolist()
-        return px, py
+        return places[CUE].tolist()
 
     def set_up(
         self, position: Position, *, scores: Any = (0, 0), striker: int = 0, free_ball: bool = False
