@@ -112,9 +112,9 @@ def main():
             while service.session.at > len(service.session.acts) * at // (ASKED + 1) or (
                 service.session.frame.phase != "stroke"
             ):
-                service.session.undo()
+                service.session.go_to(service.session.at - 1)
             asked.append(measure(answer, service, POST["advise"], {"n": 5}))
-            while service.session.redo():
+            while service.session.go_to(service.session.at + 1):
                 pass
     first, whole, strokes = review(service, 0)
     again = review(service, 1)[2]

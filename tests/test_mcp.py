@@ -14,8 +14,7 @@ from snooker_env.benchmark.playing import play_episodes
 from snooker_env.benchmark.results import read_result, strokes_of
 from snooker_env.benchmark.tasks import TASKS
 from snooker_env.mcp import server as limits
-from snooker_env.mcp.games import FreeGame, JudgedGame
-from snooker_env.mcp.server import TRACKS, Desk, draw_jpeg, serve
+from snooker_env.mcp.server import TRACKS, Desk, FreeGame, JudgedGame, draw_jpeg, serve
 from snooker_env.physics.table import Table
 from snooker_env.play.routes import POST, answer
 from snooker_env.players import decision_seeds, player
@@ -59,7 +58,7 @@ def test_an_anchor_that_plays_over_the_protocol_leaves_its_own_result(tmp_path, 
         done = len(game._played.rows)
         while len(game._played.rows) == done:
             at = game.lies()
-            key = decision_seeds(0, np.array([seeds[done]]), game._number)
+            key = decision_seeds(0, np.array([seeds[done]]), game._decide.decisions)
             (stroke,) = cue_strokes(player("ghost_ball").at(game.options).play(at, key), at)
             fields = {name: value for name, value in stroke.to_dict().items() if value is not None}
             failed, content = await call("play", **fields)

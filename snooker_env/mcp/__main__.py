@@ -8,11 +8,9 @@ from collections.abc import Sequence
 from .._lib.check import refuse
 from .._lib.command import exit_code
 from ..benchmark.tasks import TASKS
-from .games import FreeGame, JudgedGame
-from .server import TRACKS, Desk, serve
+from .server import TRACKS, Desk, FreeGame, JudgedGame, serve
 
 NAME = "python -m snooker_env mcp"
-VISITS = 50  # tables of a result unless it is said otherwise
 JUDGED = tuple(name for name, task in TASKS.items() if not task.frame)  # visits
 
 
@@ -25,7 +23,7 @@ def _arguments(words: list[str]) -> argparse.Namespace:
     add("--track", choices=TRACKS, help="what the client sees (default: words, menu and picture)")
     add("--out", metavar="FILE", help="result file; an incomplete one is continued")
     add("--task", choices=JUDGED, default=JUDGED[0], help="with --out: the task (default: %(default)s)")
-    add("--episodes", type=int, default=VISITS, help="with --out: number of tables (default: %(default)s)")
+    add("--episodes", type=int, default=50, help="with --out: number of tables (default: %(default)s)")
     add("--label", help="with --out: name of the model in the result (default: mcp)")
     shots = "with --out: simulated shots in the model's training (0: none)"
     add("--training-shots", type=int, metavar="N", help=shots)

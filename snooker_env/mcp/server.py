@@ -1,28 +1,40 @@
-"""Which tools may a client call? Those of a track, within limits; an error is one sentence. The menu of strokes says what closed
-forms foresee of each."""
+"""Which tools may a client call, on which games? Those of a track, within limits, on free games by the routes of the page or on the
+judged tables of a task; an error is one sentence. The menu of strokes says what closed forms foresee of each."""
 
 import base64
 import io
 import json
 import threading
+import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from .._lib.check import choice, integer, refuse, refuse_what
+from .._lib.check import choice, integer, refuse, refuse_what, truth
 from .._lib.install import missing
-from .._lib.types import Bools, Floats, Ints
+from .._lib.types import Bools, Floats, Ints, NoiseName
+from ..benchmark.agents import Agent
+from ..benchmark.playing import Decider, PlayedEpisodes, Repeater, rows_of, tables_for
+from ..benchmark.provenance import machine
+from ..benchmark.results import result_of, write_result
+from ..benchmark.run import read_earlier
+from ..benchmark.tasks import HELD_OUT_SEED, Task
 from ..game.balls import N_REDS, NAMES
 from ..game.frame import CHOICES
 from ..game.frame_columns import BALL_ON, PLAY
+from ..game.layouts import LAYOUTS
 from ..game.rule_sets import RULES
 from ..geometry import HALF_LENGTH, HALF_WIDTH, POCKETS
 from ..physics.table import Table
 from ..planning import Positions, pots
-from ..play.service import OFFERED, BusyError
-from ..players.cue_stroke import cue_strokes
-from ..players.seen import SeenPlayer
+from ..play.routes import GET, POST, answer
+from ..play.service import OFFERED, PERSON, BusyError, Seats, Service
+from ..play.session import Session
+from ..players.cue_stroke import STROKE, cue_strokes
+from ..players.program import ProgramPlayer
+from ..players.seen import SeenPlayer, begun
 from ..render.pygame_view import BOLD, View, draw, pygame_, typeset
 from ..render.scene import scene
 from ..simulation import SimulationError
@@ -32,7 +44,6 @@ from ..tasks.noise import LEVELS
 from ..tasks.observations import STROKE_SIZE
 from ..tasks.options import Options
 from ..tasks.stroke_menu import DECISIONS, SPEEDS, TOPS
-from .games import ALONE, DEALT, HELD_OUT_SEED, MOST_ADVICE, FreeGame, Game
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -44,6 +55,10 @@ SHOWN = 200  # of each end of an error [characters]
 LISTED, MOST_LISTED = 20, 160  # strokes that the menu lists
 SIZE = (1280, 720)  # of the picture, with the score bar, which is cut off
 
+ALONE = "nobody"  # the opponent of somebody who practises
+DEALT = tuple(name for name in LAYOUTS if not name.startswith("held_out"))  # no table of the judging
+MOST_ADVICE = 5
+
 Fields = dict[str, Any]
 _POT = 'instead of aim: {"pot": [ball, pocket]}, as {"pot": ["red 3", "middle left"]}; throw is compensated'
 _PLAY = {
@@ -51,10 +66,7 @@ _PLAY = {
     "aim": {"type": "number", "description": "direction of the cue ball [rad], anticlockwise from +x"},
     "aim_at": {"type": "object", "description": _POT},
     "side": {"type": "number", "description": "tip offset to the right, in ball radii; with top within 0.5"},
-    "top": {
-        "type": "number",
-        "description": "tip offset upwards, in ball radii: positive follows, negative draws",
-    },
+    "top": {"type": "number", "description": "tip offset upwards, in ball radii: + follows, - draws"},
     "elevation": {"type": "number", "description": "elevation of the cue, 0 to 0.52 rad"},
     "place": {"type": "array", "description": "where to place a cue ball in hand, [x, y] in metres"},
     "nominate": {"type": "string", "description": "the colour to nominate"},
@@ -84,6 +96,141 @@ _SHOWN = {
 }  # name of a number: the column that holds it, and over what
 
 
+class FreeGame:
+    """A frame against an agent, or practice alone, by the routes of the page."""
+
+    def __init__(self) -> None:
+        self._service = Service(Session(layout="opened"), Seats({}))
+        self._service.session.practice = True
+        self.advice = False  # whether the game allows it
+
+    @property
+    def options(self) -> Options:
+        session = self._service.session
+        return session.options_with(session.noise[0])
+
+    def new(self, fields: dict[str, Any]) -> None:
+        """Begin a game; ValueError for a field that is not allowed."""
+        opponent = choice("opponent", fields.get("opponent", ALONE), (ALONE, *OFFERED))
+        noise: NoiseName = choice("noise", fields.get("noise", "professional"), tuple(LEVELS))  # type: ignore[assignment]
+        advice = truth("advice", fields.get("advice", False))
+        layout = choice("layout", fields.get("layout", "opened"), DEALT)
+        seed = integer("seed", fields.get("seed", 0), 0, HELD_OUT_SEED - 1)
+        deal = {"layout": layout, "seed": seed, "game": fields.get("game", "snooker")}
+        answer(self._service, POST["new"], deal)
+        alone = opponent == ALONE
+        seats = {"players": [PERSON, PERSON if alone else opponent], "noise": [noise, noise]}
+        answer(self._service, POST["players"], seats | {"practice": alone})
+        self.advice = advice
+
+    def state(self) -> dict[str, Any]:
+        """The table as the page gets it, once the opponent has played."""
+        while (state := answer(self._service, GET["state"], {}))["thinking"]:
+            self._service.wait(state["revision"], 25.0)
+        if state["trouble"]:
+            what = f"ended by an error of the opponent ({state['trouble']})"
+            raise refuse_what("game", what, "must be begun again with new_game")
+        return state
+
+    def lies(self) -> Positions | None:
+        """The one position that a stroke is played from; None if there is none to play."""
+        with self._service.reading() as session:
+            if session.frame.phase == "over" or self._service.agent_to_play():
+                return None
+            return session.as_visit() if session.practice else session.position
+
+    def play(self, fields: dict[str, Any]) -> str:
+        """Play a stroke of ``POST api/stroke``; what happened, with the opponent's strokes that follow."""
+        before = self.state()["strokes"]
+        last = answer(self._service, POST["stroke"], fields)["state"]["last"]
+        self.state()
+        strokes = answer(self._service, GET["strokes"], {"from": before})["strokes"]
+        return " ".join(stroke["tables"][1]["last"] for stroke in strokes) or last
+
+    def advise(self, n: object) -> str:
+        """What the page advises here, in lines."""
+        if not self.advice:
+            raise refuse("advice", False, "must be allowed by new_game: this game is played without")
+        asked = {"n": integer("n", n, 1, MOST_ADVICE)}
+        strokes = answer(self._service, POST["advise"], asked)["suggestions"]
+        fields = [{name: one[name] for name in STROKE if one.get(name) is not None} for one in strokes]
+        lines = [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
+        return "\n".join(lines)
+
+
+class _Client(ProgramPlayer):
+    fields: dict[str, Any]
+
+    def _stroke(self, at: Positions, seed: int) -> Any:
+        return self._read(self.fields, at, "play")
+
+
+class JudgedGame:
+    """The first tables of a task, one visit each in their order; a result file holds what was played."""
+
+    def __init__(self, task: Task, track: str, episodes: int, out: str | Path, command: str, **declared: Any):
+        self._task, self._out, self._command, self._load = task, out, command, machine()
+        self._client = _Client(f"mcp {track}")
+        self._agent = Agent.of(self._client, **declared)
+        self._seeds = task.seeds(integer("episodes", episodes, 2, task.episodes))
+        _, self._played = read_earlier(out, task, self._agent, episodes)
+        self._played.foresees = track == "menu"
+        self.options = tables_for(task, 1, 1).options
+        self._deal()
+
+    def _deal(self) -> None:
+        done = len(self._played.rows)
+        if done < len(self._seeds):
+            seed = [self._seeds[done]]
+            self._tables = tables_for(self._task, 1, 1)
+            self._tables.reset(seed=[*seed])
+            self._decide = Decider(self._client, self._tables, seed, 0)
+            self._begun = time.perf_counter()
+
+    def state(self) -> dict[str, Any]:
+        """The table as a program gets it."""
+        at, done = self.lies(), len(self._played.rows)
+        if at is None:
+            words = f"All {done} tables are played."
+            return {"phase": "over", "words": words, "text": words, "balls_on": [], "positions": {}}
+        state = self._decide.player._state(begun(at))  # type: ignore[attr-defined]
+        where = f"Table {done + 1} of {len(self._seeds)}: {self._task.title}."
+        return state | {"words": f"{where} {state['words']}", "text": f"{where}\n{state['text']}"}
+
+    def lies(self) -> Positions | None:
+        return Positions.of(self._tables) if len(self._played.rows) < len(self._seeds) else None
+
+    def play(self, fields: dict[str, Any]) -> str:
+        """Play a stroke; after the last one of a visit the file is written, and the next table dealt."""
+        if self.lies() is None:
+            raise refuse("tables", len(self._seeds), "must not all be played: there is no stroke to play")
+        self._decide.player.fields = fields  # type: ignore[attr-defined]
+        action = self._decide(np.ones(1, np.bool_), self._decide.decisions)
+        _, _, terminated, truncated, info = self._tables.step(action)
+        said = "Foul." if info["foul"][0] else f"{int(info['points'][0])} points."
+        if not (terminated[0] or truncated[0]):
+            return said
+        row = self._keep()
+        return f"{said} The visit is over: {row[3]} strokes, {row[4]} points."
+
+    def _keep(self) -> list[int]:
+        """Add the visit as ``check`` plays it again from its strokes, and write the file."""
+        strokes = self._decide.strokes()
+        tables = tables_for(self._task, 1, 1)
+        again = Repeater(strokes, tables.options.rules.actions.size)
+        rows = rows_of(self._task, tables, [self._seeds[len(self._played.rows)]], again)
+        self._tables.close()
+        cost = self._decide.decisions, time.perf_counter() - self._begun, self._decide.simulated
+        self._played.add(PlayedEpisodes(rows, strokes, *cost))
+        done, many = len(self._played.rows), len(self._seeds)
+        why = None if done == many else f"{done} of {many} tables are played"
+        about = {"command": self._command, "load": self._load, "incomplete": why}
+        alone = PlayedEpisodes([])  # nothing is timed on one table
+        write_result(self._out, result_of(self._task, self._agent, many, self._played, alone, about))
+        self._deal()
+        return rows[0]
+
+
 class Tool(NamedTuple):
     """What a client may call; ``fields``: the JSON schema of each argument."""
 
@@ -99,7 +246,7 @@ def _up_to(most: int, default: int, least: int = 1) -> Fields:
 class Desk:
     """The tools of one client on its game, one call after the other. ``track``: what it may see, None for everything."""
 
-    def __init__(self, game: Game, track: str | None = None):
+    def __init__(self, game: FreeGame | JudgedGame, track: str | None = None):
         self._game, self._track = game, track
         self._calls, self._games, self._one = 0, 0, threading.Lock()
         free, menu = isinstance(game, FreeGame), track in ("menu", None)
@@ -122,8 +269,8 @@ class Desk:
                 "advice": {"type": "boolean", "description": "whether advise may be called (default: no)"},
             }
             self.tools["new_game"] = Tool("Start a frame, or practice alone.", fields, self._new)
-            advises = Tool("Say what an agent would play here.", {"n": _up_to(MOST_ADVICE, 3)}, self._advise)
-            self.tools["advise"] = advises
+            advised = {"n": _up_to(MOST_ADVICE, 3)}
+            self.tools["advise"] = Tool("Say what an agent would play here.", advised, self._advise)
 
     def answer(self, name: str, arguments: Fields) -> tuple[str, bytes | None, bool]:
         """Words, a picture, and whether the call was refused; if so, the words say why, and nothing has changed."""
@@ -202,7 +349,6 @@ class _Reader:
             raise ValueError(str(error).removeprefix("player menu: act(...) returned ")) from None
 
     def act(self, observations: Floats, masks: Bools, seeds: Ints) -> list[int]:
-        """The number, once it is known to be on the menu."""
         self.row, (self.there,) = observations[0], masks
         number = integer("number", self.number, 0, len(self.there) - 1)
         if not self.there[number]:

@@ -2,19 +2,22 @@
 
 import argparse
 import os
+import secrets
 import sys
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from .._lib.check import integer
-from .._lib.command import stop_with_reader
+from .._lib.command import exit_code
+from ..players.resolver import players_of
 from ..players.saved_models import add_model_options, options_of_words
+from .person import BY_NAME, USUAL, Person
+from .routes import GET, POST, answer
+from .server import PlayServer
+from .service import PERSON, Seats, Service
+from .session import Session
 
-if TYPE_CHECKING:
-    from .server import PlayServer
-    from .service import Service
-
+NAME = "snooker_env.play"
 PORT = 8147  # always the same by default, since a browser keeps scores by the page's address
 
 
@@ -37,60 +40,42 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     file = Path(folder).expanduser() / "snooker_env" / "person.json"
     person = "file that keeps your frames and strokes; nothing is sent anywhere (default: %(default)s)"
     add("--person", type=Path, default=file, metavar="FILE", help=person)
-    add("--position", type=Path, metavar="FILE", help="begin with this position (JSON)")
     add("--layout", default="break_off", help="layout of the table (default: %(default)s)")
     add("--flight", action="store_true", help="let balls fly, and the cue be raised to 70 degrees")
     add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
 
-def service_of(args: argparse.Namespace) -> "Service":
-    import numpy as np
-
-    from ..planning.position import Position
-    from ..players.resolver import players_of
-    from .levels import BY_NAME, USUAL
-    from .person import Person
-    from .service import PERSON, Seats, Service
-    from .session import Session
-
-    seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
+def service_of(args: argparse.Namespace) -> Service:
+    seed = secrets.randbits(62) if args.seed is None else args.seed
     session = Session(layout=args.layout, seed=seed, flight=args.flight)
     shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
-    players = players_of(args.agent, args.trust, options_of_words(args.options))
-    agents = dict(zip(shown, players, strict=True))
+    agents = dict(zip(shown, players_of(args.agent, args.trust, options_of_words(args.options)), strict=True))
     seats = Seats(agents, friends=args.host is not None)
     seats.sit([PERSON, next(iter(agents), USUAL)])
     session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
-    if args.position is not None:
-        session.set_up(Position.load(args.position))
     return Service(session, seats, Person(args.person))
 
 
-def warm_up(service: "Service") -> None:
+def warm_up(service: Service) -> None:
     """Compile the kernels of strokes and questions, so that nobody waits in the middle of a game."""
-    from .routes import GET, POST, answer
-
-    if service.session.frame.phase == "stroke":
-        answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
-        for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
-            service.seats.decide(name, service.session.twin())
+    answer(service, POST["destinations"], {"speed": 2.0, "aim": 1.0, "samples": 16})
+    for name in {service.seats.advisers(service.session.practice)[0], service.seats.who[1]}:
+        service.seats.decide(name, service.session.twin())
     answer(service, GET["state"], {})
 
 
-def _server(service: "Service", port: int | None, host: str | None = None) -> "PlayServer":
+def _server(service: Service, port: int | None, host: str | None = None) -> PlayServer:
     """The server on a port; by default ``PORT``, where a browser finds its settings again, or any if that is taken."""
-    from .server import PlayServer
-
-    if port is not None:
-        return PlayServer(service, integer("port", port, 0, 65535), host)
     try:
-        return PlayServer(service, PORT, host)
+        return PlayServer(service, PORT if port is None else integer("port", port, 0, 65535), host)
     except ValueError:
+        if port is not None:
+            raise
         return PlayServer(service, 0, host)
 
 
-def _invite(server: "PlayServer") -> None:
+def _invite(server: PlayServer) -> None:
     """Print the addresses for other devices, and the one for the host's own phone as a QR code."""
     print("Addresses for the same network. Nothing is encrypted, so use a network that you trust:\n")
     for one, words in zip(server.service.invites, ("you, on a phone", "a friend", "watchers"), strict=True):
@@ -101,35 +86,35 @@ def _invite(server: "PlayServer") -> None:
     print()
 
 
-@stop_with_reader()
 def main(argv: list[str] | None = None) -> int:
-    args = _arguments(argv)
-    try:
-        service = service_of(args)
-        server = _server(service, args.port, args.host)
-        print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
-        warm_up(service)
-    except (ValueError, OSError, OverflowError) as error:
-        print(f"snooker_env.play: {error}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("snooker_env.play: interrupted", file=sys.stderr)
-        return 130
-    try:
-        print(f"Snooker is played at\n\n    {server.address}\n")
-        if args.host is not None:
-            _invite(server)
-        print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server and the game.")
-        sys.stdout.flush()
-        if not args.no_browser and not webbrowser.open(server.address):
-            print(f"No browser was found. Open {server.address} in one.", flush=True)
-        server.serve_forever(poll_interval=0.2)
-    except KeyboardInterrupt:
-        print()
-    finally:
-        service.close()
-        server.server_close()
-    return 0
+    """Serve until Ctrl-C. Exit code 0; 2: wrong arguments; 130: Ctrl-C while it starts."""
+
+    def run() -> int:
+        args = _arguments(argv)
+        try:
+            service = service_of(args)
+            server = _server(service, args.port, args.host)
+            print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
+            warm_up(service)
+        except (ValueError, OSError, OverflowError) as error:
+            print(f"{NAME}: {error}", file=sys.stderr)
+            return 2
+        try:
+            print(f"Snooker is played at\n\n    {server.address}\n")
+            if args.host is not None:
+                _invite(server)
+            print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server.", flush=True)
+            if not args.no_browser and not webbrowser.open(server.address):
+                print(f"No browser was found. Open {server.address} in one.", flush=True)
+            server.serve_forever(poll_interval=0.2)
+        except KeyboardInterrupt:
+            print()
+        finally:
+            service.close()
+            server.server_close()
+        return 0
+
+    return exit_code(NAME, run)
 
 
 if __name__ == "__main__":

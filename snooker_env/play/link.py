@@ -7,6 +7,7 @@ import re
 import zlib
 from base64 import urlsafe_b64decode, urlsafe_b64encode
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -16,15 +17,12 @@ from .._lib.check import integer, refuse, refuse_what
 from .._lib.files import strict_json
 from ..advice import CueStroke
 from ..game.balls import CUE
-from ..game.fouls import AUTO
 from ..game.frame import Frame
-from ..players.table_report import nominations_of
+from ..replays.chances import Standing
 from ..simulation import SimulationError
-from ..tasks.frames import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
-from .grid import HIGH, LOW, STEP, Flags, Grid, Places, is_sound, list_moved, numbers_of, steps_of, stroke_of
-from .session import DECLINED, Act, Session
+from .session import HIGH, LOW, STEP, Act, Session, list_moved, nominable, numbers_of, steps_of, stroke_of
 
 T = TypeVar("T")
 FORM = 1  # of a link
@@ -46,7 +44,6 @@ class Digits:
         self.base: int = 1
 
     def within(self, low: int, high: int, value: int = 0) -> int:
-        """An integer in [low, high]."""
         base = high - low + 1
         if self.reads:
             self.number, digit = divmod(self.number, base)
@@ -60,28 +57,6 @@ class Digits:
         return values[self.within(0, len(values) - 1, known)]
 
 
-class Told(Grid):
-    """A ``Grid`` on which balls come to rest where a link says it."""
-
-    def __init__(self, digits: Digits):
-        self._digits = digits
-
-    def settle(self, tables: Frames, before: Places) -> None:
-        super().settle(tables, before)
-        here = _sum(tables.positions[0], tables.on_table[0], tables.frame(0))
-        if self._digits.within(0, CHECK - 1) != here or not is_sound(tables):
-            allowed = "must be as in the link: another processor differs, or the link was changed"
-            raise refuse_what("what it leaves", "other places or scores here", allowed)
-
-    def put(self, tables: Frames, ball: int) -> None:
-        if ball == CUE and tables.frame(0).in_hand:  # it is placed before its stroke
-            return super().put(tables, ball)
-        place = tables.positions[0, ball]
-        for axis, here in enumerate(steps_of(place).tolist()):
-            shift = (self._digits.within(0, NEAR - 1) - here + NEAR // 2) % NEAR - NEAR // 2
-            place[axis] = (here + shift) * STEP
-
-
 def write_link(session: Session) -> str:
     """The game from its last new table on, in letters of base64url."""
     acts, digits = session.acts[: session.at], Digits()
@@ -91,14 +66,9 @@ def write_link(session: Session) -> str:
     first = session.save() | {"state": acts[0].state | {"stream": [0, counter]}}
     digits.within(0, MOST_ACTS - 1, len(acts) - 1)
     for before, act in pairwise(acts):
-        _code_act(digits, Frame.from_dict(before.state["frame"]), first, act.asked)
+        _code_act(digits, before.standing.frame, first, act.asked)
         if act.what == "stroke":
-            positions, on_table = act.state["positions"], act.state["on_table"]
-            frame = Frame.from_dict(act.state["frame"])
-            for ball in list_moved(before.state["positions"], positions, on_table, frame):
-                for step in steps_of(positions[ball]).tolist():
-                    digits.within(0, NEAR - 1, step % NEAR)
-            digits.within(0, CHECK - 1, _sum(positions, on_table, frame))
+            _code_rest(digits, before, act.standing)
     pack = zlib.compressobj(9, wbits=-15, zdict=_usual())
     table = pack.compress(json.dumps(first).encode()) + pack.flush()
     number = digits.number.to_bytes((digits.base.bit_length() + 7) // 8, "little")
@@ -106,38 +76,34 @@ def write_link(session: Session) -> str:
     return urlsafe_b64encode(whole + zlib.crc32(whole).to_bytes(TAIL, "big")).decode().rstrip("=")
 
 
-def open_link(session: Session, link: object, *, agreed: bool = False) -> None:
-    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here.
-    ``agreed``: nobody may have changed errors or cue on the way, or practised."""
-    first, digits = _read_link(session, link)
+def open_link(session: Session, link: object, shared: Sequence[Act] | None = None) -> None:
+    """Play a result of ``write_link`` again; ValueError, which names the stroke, if it comes out otherwise here. ``shared``: in
+    a game by link, what was played of it here; then nobody may have changed errors or cue on the way, or practised."""
+    (first, digits), agreed = _read_link(session, link), shared is not None
     with session.as_a_whole():
         session.load(first)
-        session.grid = Told(digits)
         if agreed and session.practice:
             raise refuse("practice", True, "must be False in a game by link")
         if agreed and (session.state["strokes"] or any(session.frame.scores)):
             raise refuse("scores", list(session.frame.scores), "must be 0 at the beginning of a game by link")
         for _ in range(digits.within(0, MOST_ACTS - 1)):
+            number = len(session.strokes) + 1
             try:
                 asked = _code_act(digits, session.frame, first, {})
                 if agreed and _setting(asked, first, session.frame) != _setting({}, first, session.frame):
                     raise refuse("noise", asked["noise"], "must stay as at the beginning, as must the cue")
-                _do(session, asked)
+                _do(session, digits, asked)
             except (ValueError, SimulationError) as error:
-                raise ValueError(f"link, stroke {len(session.strokes) + 1}: {error}") from None
+                raise ValueError(f"link, stroke {number}: {error}") from None
         if digits.number:
             raise refuse_what("link", "more after its last act", "must end with it")
         session.noise, session.practice, session.cue = list(first["noise"]), first["practice"], first["cue"]
-        session.grid = Grid()
-
-
-def check_course(played: Sequence[Act], acts: Sequence[Act]) -> None:
-    """ValueError unless a game by link that is opened again begins with what was ``played`` of it here."""
-    if not played or played[0].state["stream"][0] != acts[0].state["stream"][0]:
-        return  # another game
-    same = played[0].state == acts[0].state and len(played) <= len(acts)
-    if not same or any(one.asked != other.asked for one, other in zip(played[1:], acts[1:], strict=False)):
-        raise refuse_what("link", "an older or different game", "must begin with what was played of it here")
+        if shared and shared[0].state["stream"][0] == first["state"]["stream"][0]:  # the same game
+            both = shared, session.acts[: len(shared)]
+            here, there = ([acts[0].state, *(act.asked for act in acts)] for acts in both)
+            if here != there:
+                allowed = "must begin with what was played of it here"
+                raise refuse_what("link", "an older or different game", allowed)
 
 
 def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[str, Any]) -> dict[str, Any]:
@@ -154,8 +120,7 @@ def _code_act(digits: Digits, frame: Frame, first: dict[str, Any], asked: dict[s
     stroke = stroke_of([*numbers, digits.within(0, HIGH[4], values[4]) if tilts else 0])
     place = steps_of(asked.get("place") or [0.0, 0.0]).tolist() if frame.in_hand else []
     place = [digits.within(-BED, BED, step) * STEP for step in place] or None
-    open_to = [AUTO, *[DECLINED] * frame.free_ball, *nominations_of(frame)]
-    nominated = digits.one_of(open_to, asked.get("nominate"))
+    nominated = digits.one_of(nominable(frame), asked.get("nominate"))
     setting = _setting(asked, first, frame)
     if digits.within(0, 1, int(setting != _setting({}, first, frame))):
         settings = list(LEVELS), (False, True), CUES
@@ -170,7 +135,8 @@ def _setting(asked: dict[str, Any], first: dict[str, Any], frame: Frame) -> tupl
     return tuple((usual | asked)[name] for name in SETTING)
 
 
-def _do(session: Session, asked: dict[str, Any]) -> None:
+def _do(session: Session, digits: Digits, asked: dict[str, Any]) -> None:
+    """Do what was asked for; after a stroke, the balls come to rest where the link says it."""
     if "choice" in asked:
         session.choose(asked["choice"])
     elif "declare" in asked:
@@ -178,18 +144,29 @@ def _do(session: Session, asked: dict[str, Any]) -> None:
     else:
         noise, session.practice, session.cue = (asked[name] for name in SETTING)
         session.noise[session.frame.striker] = noise
-        if (place := asked["place"]) is not None and list(session.place(*place)) != place:
+        if (place := asked["place"]) is not None and session.place(*place) != place:
             raise refuse("place", place, "must be free for the cue ball in hand")
         stroke = CueStroke.of({name: asked[name] for name in STROKE})
-        session.play(stroke, nominated=asked["nominate"])
+        played, tables = session.play(stroke, nominated=asked["nominate"]), session.tables
+        rest = Standing(session.frame, tables.positions[0], tables.on_table[0])
+        if not _code_rest(digits, session.acts[-2], rest) or not session.is_sound():
+            allowed = "must be as in the link: another processor differs, or the link was changed"
+            raise refuse_what("what it leaves", "other places or scores here", allowed)
+        session.acts[-1] = replace(played, state=session.state)
 
 
-def _sum(positions: Places, on_table: Flags, frame: Frame) -> int:
-    """The check of the balls that lie on the table, and of what the referee says."""
-    there = [i for i, on in enumerate(on_table) if on and (i != CUE or not frame.in_hand)]
-    places = [(i, *steps_of(positions[i]).tolist()) for i in there]
+def _code_rest(digits: Digits, before: Act, rest: Standing) -> bool:
+    """Where the balls that moved came to rest, written, or read and taken; whether the check of places and scores is theirs."""
+    for ball in list_moved(before.state["positions"], rest):
+        for axis, here in enumerate(steps_of(rest.positions[ball]).tolist()):
+            shift = (digits.within(0, NEAR - 1, here % NEAR) - here + NEAR // 2) % NEAR - NEAR // 2
+            rest.positions[ball, axis] = (here + shift) * STEP
+    frame = rest.frame
+    there = [i for i, on in enumerate(rest.on_table) if on and (i != CUE or not frame.in_hand)]
+    places = [(i, *steps_of(rest.positions[i]).tolist()) for i in there]
     said = frame.scores, frame.striker, frame.phase, int(frame.ball_on), frame.free_ball, frame.miss_called
-    return zlib.crc32(repr((places, said)).encode()) % CHECK
+    check = zlib.crc32(repr((places, said)).encode()) % CHECK
+    return digits.within(0, CHECK - 1, check) == check
 
 
 @cache

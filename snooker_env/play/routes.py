@@ -11,35 +11,152 @@ import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, truth
 from .._lib.types import CueKind
-from ..advice import CueStroke, Suggestion, advise, coach, destinations
+from ..advice import POCKET_WORDS, CueStroke, advise, coach, destinations
 from ..advice.practice import room_for
 from ..advice.review import SAMPLES, read_frame
 from ..game.balls import CUE, NAMES
 from ..game.fouls import AUTO
-from ..game.frame import CHOICES
-from ..geometry import POCKETS
+from ..game.frame import Frame
+from ..game.rule_sets import RULES
+from ..geometry import POCKET_AIMS, POCKETS
+from ..physics.cue_room import BUTT, LENGTH, RAIL, TIP
 from ..physics.engine import EventKind
 from ..planning.position import Position
+from ..planning.stroke_columns import FARTHEST
 from ..players.cue_stroke import STROKE, read_colour, read_place, read_stroke
-from ..render.scene import trace_paths
+from ..players.table_report import report_game, report_turn, say_score, say_table
+from ..render.scene import scene_data, trace_paths
 from ..replays import Replay
-from ..replays.encode import pack
+from ..replays.encode import encode_stroke, pack
+from ..replays.referee_words import ERRORS, sentence
 from ..simulation.shot import Shot
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.noise import LEVELS
 from ..tasks.options import CUES
 from ..tasks.states import MOST
-from .link import check_course, open_link, write_link
-from .report import MOST_SAMPLES, MOST_SUGGESTIONS, report, scene, stroke_report, table_after
-from .service import LINKED, Reviewing, Service, StaleError
-from .session import Session, read_levels
+from .link import open_link, write_link
+from .person import BY_NAME
+from .service import LINKED, PERSON, Reviewing, Service, StaleError
+from .session import Act, Session, read_levels
+
+MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
+MOST_SUGGESTIONS = 10
+IN_SESSION = ("begun", "practice", "cue", "breaks", "hints", "undone")
 
 
 class Route(NamedTuple):
-    """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
+    """What answers a route, with JSON types, and the fields a request may have."""
 
     handler: Callable[[Service, dict[str, Any]], Any]
     fields: tuple[str, ...] = ()
     friend: bool = False  # whether not the host alone may post it, but a friend, too
+
+
+def scene(service: Service) -> dict[str, Any]:
+    """The constant part: the table as it is drawn, limits of strokes, available players."""
+    rules = service.session.options_with("none").rules
+    assert isinstance(rules.actions, Actions)
+    limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, rules.actions.steepest]}
+    pockets = zip(POCKETS, POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
+    return {
+        "scene": scene_data(rules.table),
+        "R": rules.physics.R,
+        "spin_decel": rules.physics.spin_decel,
+        "cue": {"tip": TIP, "butt": BUTT, "length": LENGTH, "rail": RAIL},
+        "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
+        "pockets": [{"key": key, "name": name, "x": x, "y": y} for key, name, (x, y) in pockets],
+        "players": service.seats.names,
+        "levels": [level._asdict() for level in BY_NAME.values()],
+        "opponents": service.seats.opponents,
+        "noise": ERRORS,
+        "cues": list(CUES),
+        "games": list(RULES),
+        "me": service.me,
+        "invites": service.invites if service.me == PERSON else [],
+    }
+
+
+_SAID = {
+    "play": "{} played on.",
+    "play_again": "{} asked the opponent to play again.",
+    "replace": "{} had the balls put back.",
+    "anywhere": "{} took the cue ball in hand.",
+    "concede": "{} conceded the frame.",
+    "claim": "{} claimed the frame.",
+    "set_up": "Position set up.",
+    "load": "Game loaded.",
+    "new": "New frame.",
+}  # of an act that is no stroke, or of the decision after a foul
+
+
+def last_words(act: Act, labels: tuple[str, str]) -> str:
+    """An act in a sentence, after the foul that it answers."""
+    who = "" if act.player is None else labels[act.player]
+    if act.played is not None:
+        named = act.asked["nominate"]
+        nominated = f" ({NAMES[named]} nominated)" if named > CUE else ""
+        return f"{who}{nominated}: {sentence(act.played, labels)}"
+    foul = "" if act.answers is None or act.answers.played is None else last_words(act.answers, labels)
+    return f"{foul} {_SAID[act.asked.get('choice', act.what)].format(who)}".strip()
+
+
+def table_after(act: Act, labels: tuple[str, str], win_chance: float | None) -> dict[str, Any]:
+    """The table and the scoreboard after an act; ``win_chance``: of seat 0."""
+    frame, table = Frame.from_dict(act.state["frame"]), (act.state["positions"], act.state["on_table"])
+    return report_game(frame, *table, labels) | {"win_chance": win_chance, "last": last_words(act, labels)}
+
+
+def stroke_report(service: Service, k: int) -> dict[str, Any]:
+    """The act with this index, which is a stroke: as in a replay, with the tables before and after it."""
+    acts, labels = service.session.acts, service.labels
+    played = acts[k].played
+    assert played is not None
+    both = acts[k - 1 : k + 1]
+    after = zip(both, service.win_chances(both), strict=True)
+    tables = [table_after(act, labels, chance) for act, chance in after]
+    return encode_stroke(played, labels) | {"tables": tables}
+
+
+def report(service: Service) -> dict[str, Any]:
+    with service.reading() as session:
+        seats, labels = service.seats, service.labels
+        frame, act, host = session.frame, session.acts[session.at - 1], service.me == PERSON
+        state = table_after(act, labels, service.win_chances([act])[0])
+        table, noise = session.tables.rules.table, session.noise[frame.striker]
+        turn, lines = report_turn(frame, session.position, table, noise)
+        state |= turn | {name: getattr(session, name) for name in IN_SESSION} | {"game": frame.rules}
+        by_link, players = host and LINKED in seats.who, [session.acts[k].player for k in session.strokes]
+        visit = max((k for k in range(1, len(players)) if players[k - 1] != players[-1]), default=0)
+        state |= {
+            "revision": service.revision,
+            "thinking": service.thinking,
+            "trouble": service.trouble,
+            "players": seats.seen_by(service.me),
+            "labels": list(labels),
+            "advisers": seats.advisers(session.practice),
+            "level": seats.level(session),
+            "noise": list(session.noise),
+            "choice_wins": service.choice_chances(),
+            "paused": host and service.paused and service.agent_to_play(),
+            "strokes": len(session.strokes),
+            "undo": host and session.at > 1 and not by_link,
+            "redo": host and session.at < len(session.acts),
+            "by_link": {"seat": seats.who.index(PERSON), "visit": visit} if by_link else None,
+        }
+        if service.agent_to_play():
+            waits = "is waiting for Continue." if service.paused else "is thinking."
+            state["words"] = service.trouble or f"{labels[frame.striker]} {waits}"
+        if host and frame.phase != "over" and seats.who[frame.striker] == LINKED:
+            state["words"] = "It is your friend's turn: send the link."
+        elif by_link and act.what == "new":
+            state["last"] = "New frame. Play first, then send your friend the link."
+        fair = act.played is not None and not (act.played.fouls or act.played.points)
+        if fair and state["snookered"]:
+            state["last"] = f"{state['last'].removesuffix('.')}: {labels[frame.striker]} is snookered."
+        if state["phase"] == "over":
+            state["words"] = f"{state['words']} {service.unkept if host else ''}".strip()
+        said = [state["last"], state["words"], say_score(state, labels)]
+        return state | {"text": say_table(state, lines, said)}
 
 
 def _state(service: Service, fields: dict[str, Any]) -> None:
@@ -74,15 +191,13 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if strikes:
             session.play(take_stroke(session, fields), nominated=nominated)
             struck = stroke_report(service, session.at - 1)
-    with service.reading():
-        return {"stroke": struck, "state": report(service)}
+    return {"stroke": struck, "state": report(service)}
 
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = list(session.place(*read_place("place", fields.get("place"))))
-    with service.reading():
-        return {"place": place, "state": report(service)}
+        place = session.place(*read_place("place", fields.get("place")))
+    return {"place": place, "state": report(service)}
 
 
 def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
@@ -98,11 +213,11 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     return {"sound": True, "error": None} if check else None
 
 
-def _move(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
+def _move(service: Service, fields: dict[str, Any], acts: int) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people, before = not all(map(service.seats.is_agent, (0, 1))), session.at
-        while move(session) and people and service.agent_to_play():
+        while session.go_to(session.at + acts) and people and service.agent_to_play():
             pass
         session.undone += session.at < before
 
@@ -112,13 +227,10 @@ def _new(service: Service, fields: dict[str, Any]) -> None:
     if not isinstance(fields.get("layout", ""), str):
         raise refuse("layout", fields["layout"], "must be the name of a layout")
     with service.acting(anew=True) as session:
-        noise = list(session.noise)
         session.new(**fields)
+        session.noise[:] = service.seats.share(0 if by_link else None, list(session.noise))
         if by_link:
             session.noise[1], session.practice = session.noise[0], False
-            service.seats.share(0, noise)
-        elif (before := service.seats.share_no_more()) is not None:
-            session.noise[:] = before
 
 
 def _players(service: Service, fields: dict[str, Any]) -> None:
@@ -146,12 +258,8 @@ def _load(service: Service, fields: dict[str, Any]) -> None:
         integer("seat", seat, 0, 1)
     with service.acting(pause=True, anew=True) as session:
         noise, played = list(session.noise), session.acts[: session.at] if LINKED in service.seats.who else []
-        open_link(session, fields.get("link"), agreed=by_link)
-        if not by_link:
-            service.seats.share_no_more()
-            return
-        check_course(played, session.acts)
-        if seat is None:  # who opens it is not who played last
+        open_link(session, fields.get("link"), played if by_link else None)
+        if by_link and seat is None:  # who opens it is not who played last
             last, frame = session.acts[-1].player, session.frame
             seat = frame.striker if frame.phase != "over" or last is None else 1 - last
         service.seats.share(seat, noise)
@@ -162,35 +270,27 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         agent = choice("agent", fields.get("agent", seats.advisers(session.practice)[0]), seats.players)
         errors = _errors(fields, 200, seats.level(session))
-        session.noise[:] = [errors["noise"]] * 2  # the question's own: nothing is played
-        decided = None
         if session.frame.phase == "choice":
-            decided = CHOICES[int(seats.decide(agent, session).decision[0])]
             session.choose("play")  # the strokes are those of a player who plays the table as it lies
         at = session.as_visit() if session.practice else session.position  # alone at the table nobody wins
         advice = advise(at, agent=seats.players[agent], n=n, options=session.options, **errors)
-        told = {"agent": agent, "order": advice.order, "noise": advice.noise, "choice": decided}
-        told["suggestions"] = [_draw_suggestion(session, one) for one in advice]
-    with service.reading() as now:
+        suggestions = []
+        for one in advice:
+            balls = ("ball", one.ball), ("first", one.first)
+            names = {key: NAMES[k] if k >= 0 else None for key, k in balls}
+            names |= {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
+            suggestions.append(one.to_dict() | names | _paths(_play_exactly(session, one.stroke)))
+    with service.reading(_revision(fields)) as now:  # a hint that comes too late does not count
         seat = session.frame.striker
-        shown = now.begun == session.begun and _revision(fields) in (None, service.revision)
-        if shown and not now.practice and seats.who[seat] == service.me:
+        if now.begun == session.begun and not now.practice and seats.who[seat] == service.me:
             now.hints[seat] += 1
-    return told
-
-
-def _draw_suggestion(session: Session, one: Suggestion) -> dict[str, Any]:
-    names = {"pocket": POCKETS[one.pocket] if one.pocket >= 0 else None}
-    names |= {key: NAMES[k] if k >= 0 else None for key, k in (("ball", one.ball), ("first", one.first))}
-    return one.to_dict() | names | _paths(_play_exactly(session, one.stroke))
+    return {"agent": agent, "order": advice.order, "noise": advice.noise, "suggestions": suggestions}
 
 
 def _play_exactly(session: Session, stroke: CueStroke) -> Shot:
     """The stroke without execution errors, on a copy of the table."""
     twin = session.twin()
     twin.noise = ["none", "none"]
-    if stroke.place is not None:
-        twin.place(*stroke.place)
     played = twin.play(stroke).played
     assert played is not None
     return played.shot
@@ -264,15 +364,15 @@ def _coach(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     return found.to_dict() | {"text": str(found)}
 
 
-def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
+def _replay(service: Service) -> Replay:
     with service.reading() as session:
-        strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels, judge = service.labels, service.judge()
-        luck = session.luck if judge is not None and any(session.luck) else None
+        acts, labels, judge = session.acts[: session.at], service.labels, service.judge()
+        strokes = [act.played for act in acts if act.played is not None]
+        known = [act.luck for act in acts if act.played is not None]
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
-    title = f"{labels[0]} - {labels[1]}"
-    return form(Replay(strokes, title=title, players=labels, judge=judge, luck=luck))
+    luck = known if judge is not None and any(known) else None
+    return Replay(strokes, title=" - ".join(labels), players=labels, judge=judge, luck=luck)
 
 
 def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -285,7 +385,7 @@ def _review(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
             advisers = service.seats.advisers(practice=False)
             agent = service.seats.players[choice("agent", fields.get("agent", advisers[0]), advisers)]
             people = [seat for seat in (0, 1) if not service.seats.is_agent(seat)] or (0, 1)
-            frame = read_frame(_replay(service, {}, Replay.to_dict))
+            frame = read_frame(_replay(service).to_dict())
             errors = _errors(fields, SAMPLES, service.seats.level(session))
             service.reviewing = Reviewing(session, frame, people, agent=agent, **errors)
     return service.own_review().report()
@@ -314,32 +414,32 @@ def _again(service: Service, fields: dict[str, Any]) -> None:
         session.undone += 1
 
 
-ERRORS = ("noise", "samples", "seed", "revision")
+ASKED = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "replay": Route(partial(_replay, form=Replay.to_dict)),
-    "replay.html": Route(partial(_replay, form=Replay.html)),
+    "replay": Route(lambda service, fields: _replay(service).to_dict()),
+    "replay_page": Route(lambda service, fields: {"html": _replay(service).html()}),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision"), True),
     "person": Route(_person, ("name", "delete")),
     "coach": Route(_coach),
     "place": Route(_place, ("place",), True),
-    "advise": Route(_advise, ("agent", "n", *ERRORS), True),
-    "destinations": Route(_destinations, (*STROKE, *ERRORS), True),
+    "advise": Route(_advise, ("agent", "n", *ASKED), True),
+    "destinations": Route(_destinations, (*STROKE, *ASKED), True),
     "room": Route(_room, (*STROKE, "revision"), True),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
-    "undo": Route(partial(_move, move=Session.undo)),
-    "redo": Route(partial(_move, move=Session.redo)),
+    "undo": Route(partial(_move, acts=-1)),
+    "redo": Route(partial(_move, acts=1)),
     "new": Route(_new, ("layout", "seed", "breaker", "game", "by_link")),
     "players": Route(_players, ("players", "noise", "practice", "cue")),
     "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede, friend=True),
     "link": Route(_link),  # it holds the random stream: the host's alone
     "load": Route(_load, ("link", "seat")),
-    "review": Route(_review, ("agent", "stop", *ERRORS[:3])),
+    "review": Route(_review, ("agent", "stop", *ASKED[:3])),
     "reviewed": Route(_reviewed, ("stroke",)),
     "again": Route(_again, ("stroke",)),
 }
@@ -363,7 +463,4 @@ def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
         reply = route.handler(service, dict(fields))
     except StaleError:
         return {"stale": True}
-    if reply is not None:
-        return reply
-    with service.reading():
-        return report(service)
+    return report(service) if reply is None else reply

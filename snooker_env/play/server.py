@@ -13,7 +13,6 @@ import sys
 import threading
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from ipaddress import IPv4Address
 from pathlib import Path
 from socketserver import TCPServer
 from time import monotonic
@@ -30,8 +29,8 @@ from .routes import GET, POST, answer, parts_of
 from .service import ASKING, FRIEND, PERSON, WATCHER, BusyError, Service
 
 WEB = Path(__file__).with_name("web")
-SCRIPTS = ("table.js", *sorted(path.name for path in WEB.glob("*.js")))
-FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
+FILES = {"": "text/html", "play.css": "text/css", "table.js": "text/javascript"}
+FILES |= {path.name: "text/javascript" for path in WEB.glob("*.js")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_BODY = 131_072  # largest body of a request [bytes]; a replay has about 200 for each stroke
 IDLE = 20.0  # how long a connection waits for the next byte, and for a whole request [s]
@@ -58,9 +57,7 @@ HEADERS = {
 class RefusedError(Exception):
     """A request that is refused, with its status and the JSON error."""
 
-    def __init__(
-        self, status: int, message: str, field: str | None = None, value: object = None, **headers: str
-    ):
+    def __init__(self, status: int, message: str, field: object = None, value: object = None, **headers: str):
         super().__init__(message)
         self.status, self.headers = status, headers
         self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
@@ -81,13 +78,10 @@ class PlayHandler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer an error that ``http.server`` itself finds, as one JSON error."""
         self.close_connection = True
-        words = message or "not a request that can be answered"
-        self._refuse(RefusedError(405 if code == 501 else code, words))
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("do_"):  # any method: the same checks refuse it, after the token
-            return self._serve
-        raise AttributeError(name)
+        if code == 501:
+            self._refuse(RefusedError(405, "the method must be GET or POST", Allow="GET, POST"))
+        else:
+            self._refuse(RefusedError(code, message or "not a request that can be answered"))
 
     def handle_one_request(self) -> None:
         """Handle one request; then the connection waits again."""
@@ -114,12 +108,8 @@ class PlayHandler(BaseHTTPRequestHandler):
             fields = query if self.command == "GET" else self._body()
             ASKING.set(self.who)
             reply = answer(self.server.service, route, fields)
-            if isinstance(reply, str):
-                more = {"Content-Disposition": 'attachment; filename="replay.html"'}
-                self._send(200, reply.encode(), "text/html", more)
-            else:
-                text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
-                self._send(200, text.encode(), "application/json")
+            text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
+            self._send(200, text.encode(), "application/json")
         except RefusedError as refused:
             self.close_connection = True  # the rest of the request may not have been read
             self._refuse(refused)
@@ -129,6 +119,8 @@ class PlayHandler(BaseHTTPRequestHandler):
             self._refuse(RefusedError(503, f"busy: {error}"))
         except SimulationError as error:
             self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
+
+    do_GET = do_POST = _serve  # noqa: N815
 
     def _check_request(self) -> tuple[str, dict[str, Any]]:
         """The path after the token and the query, of a valid request."""
@@ -156,8 +148,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         if not self.who:
             raise RefusedError(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
-        if self.command not in ("GET", "POST"):
-            raise RefusedError(405, "the method must be GET or POST", Allow="GET, POST")
         known = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
         if name not in known[self.command]:
             other = next((method for method, names in known.items() if name in names), None)
@@ -179,14 +169,13 @@ class PlayHandler(BaseHTTPRequestHandler):
         return {f"{name}:{self.server.server_port}" for name in names}
 
     def _is_local(self) -> bool:
-        return IPv4Address(self.connection.getsockname()[0]).is_loopback
+        return self.connection.getsockname()[0].startswith("127.")
 
     def _query(self, text: str) -> dict[str, Any]:
-        pairs = parse_qsl(text, keep_blank_values=True)
         if text and self.command == "POST":
             raise RefusedError(400, "POST must have its fields in its body, not in its address")
         fields: dict[str, Any] = {}
-        for name, value in pairs:
+        for name, value in parse_qsl(text, keep_blank_values=True):
             if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
             is_number = re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value)
@@ -194,22 +183,22 @@ class PlayHandler(BaseHTTPRequestHandler):
         return fields
 
     def _body(self) -> dict[str, Any]:
-        length = self.headers.get_all("Content-Length") or []
-        if not length or length == ["0"]:  # as ``curl -X POST`` sends it
+        length = self.headers.get("Content-Length")
+        if length is None or length == "0":  # as ``curl -X POST`` sends it
             # there might be a body without a known end
-            self.close_connection = self.close_connection or not length
+            self.close_connection = self.close_connection or length is None
             return {}
-        if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
-            raise RefusedError(411, "must be one number of bytes", "Content-Length", ", ".join(length))
-        if int(length[0]) > MOST_BODY:
-            raise RefusedError(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length[0]))
+        if not re.fullmatch(r"\d{1,12}", length):
+            raise RefusedError(411, "must be one number of bytes", "Content-Length", length)
+        if int(length) > MOST_BODY:
+            raise RefusedError(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length))
         kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
         if kind != "application/json":
             raise RefusedError(415, "must be application/json", "Content-Type", kind)
         self.server.waiting[self.connection] = True, monotonic()
-        raw = self.rfile.read(int(length[0]))
+        raw = self.rfile.read(int(length))
         self.server.waiting.pop(self.connection, None)
-        if len(raw) < int(length[0]):
+        if len(raw) < int(length):
             raise RefusedError(400, "the body ended before its Content-Length")
         try:
             return read_object(raw)

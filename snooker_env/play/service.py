@@ -20,14 +20,12 @@ from ..game.frame import CHOICES
 from ..game.frame_columns import STROKES
 from ..players import Player, Strokes, player
 from ..players.cue_stroke import cue_strokes
-from ..players.table_report import nominations_of
 from ..replays.chances import ChanceJudge, win_chances
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
 from ..tasks.noise import LEVELS
-from .levels import BY_NAME
-from .person import Person, tell_frame
-from .session import DECLINED, Act, Session
+from .person import BY_NAME, Person, tell_frame
+from .session import Act, Session, nominable
 
 PERSON = "person"  # who sits at the page of the host
 FRIEND, WATCHER = "friend", "watcher"  # at other devices: who plays a seat there, and who looks on
@@ -40,17 +38,14 @@ OFFERED = (AGENT, "tactician_500", "search_2000", "ghost_ball", "random")  # age
 class Seats:
     """The two seats, and the players that may take them: ``agents`` by name, ``OFFERED``, the levels, and ``friends``."""
 
-    who: list[str]  # ``PERSON``, ``FRIEND``, ``LINKED`` or the name of an agent, for each seat
-
     def __init__(self, agents: Mapping[str, Player], *, friends: bool = False):
-        self.players: dict[str, Player] = dict(agents)
-        for name in OFFERED:
-            self.players.setdefault(name, player(name))
+        own = {name: player(name) for name in OFFERED if name not in agents}
+        self.players: dict[str, Player] = {**agents, **own}
         self.opponents: list[str] = [*agents, *BY_NAME]  # for the menu
         for level in BY_NAME.values():
             self.players.setdefault(level.name, self.players.get(level.agent) or player(level.agent))
         self.persons: list[str] = [PERSON, *[FRIEND] * friends]
-        self.who = [PERSON, PERSON]
+        self.who: list[str] = [PERSON, PERSON]  # or ``FRIEND``, ``LINKED`` or the name of an agent
         # who sat here before a game by link, and their errors
         self._before: tuple[list[str], list[NoiseName]] = list(self.who), []
 
@@ -64,8 +59,7 @@ class Seats:
         return [name for name in known if practice or getattr(self.players[name], "frames", True)]
 
     def level(self, session: Session) -> NoiseName:
-        """The errors of both in advice and the chance to win: the largest of the persons' who play, else of the agents'. A
-        person without errors counts as an amateur, and nobody as better than a professional: so learned the tactician."""
+        """The errors of both in advice and chances: the largest of the persons' who play, else of the agents' (``common_noise``)."""
         seats = range(1 if session.practice else 2)
         people = [seat for seat in seats if not self.is_agent(seat)]
         errors = [LEVELS[session.noise[seat]] for seat in people or seats]
@@ -80,17 +74,13 @@ class Seats:
     def is_agent(self, seat: int) -> bool:
         return self.who[seat] not in (PERSON, FRIEND, LINKED)
 
-    def share(self, seat: int, noise: list[NoiseName]) -> None:
-        """The person plays this seat, and a friend by link the other; ``noise``: the errors of those who sat there."""
-        if LINKED not in self.who:
-            self._before = self.who, noise
-        self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
-
-    def share_no_more(self) -> list[NoiseName] | None:
-        """Those who sat here before a game by link come back; returns their errors. None: there was no such game."""
-        if LINKED not in self.who:
-            return None
-        self.who, noise = self._before
+    def share(self, seat: int | None, noise: list[NoiseName]) -> list[NoiseName]:
+        """A person with these errors plays a seat, and a friend by link the other; None: back to who sat here before, and errs so."""
+        if seat is None and LINKED in self.who:
+            self.who, noise = self._before
+        elif seat is not None:
+            self._before = self._before if LINKED in self.who else (self.who, noise)
+            self.who = [PERSON if k == seat else LINKED for k in (0, 1)]
         return noise
 
     def seen_by(self, me: str) -> list[str]:
@@ -219,8 +209,7 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False, anew: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: also in an agent's turn; ``anew``:
-        another game begins."""
+        """The game, for changing it as a whole. ``pause``: agents then wait; ``any_turn``: not mine alone; ``anew``: another game."""
         with self.reading(revision) as session:
             if not (any_turn or anew):
                 self.check_turn()
@@ -285,10 +274,9 @@ class Service:
 
     def go_on(self) -> None:
         with self._changed:
-            if not self.paused:
-                return  # it is thinking already: another page was first
-            self.paused, self.trouble = False, ""
-            self._announce()
+            if self.paused:  # else it is thinking already: another page was first
+                self.paused, self.trouble = False, ""
+                self._announce()
 
     def agent_to_play(self) -> bool:
         frame = self.session.frame
@@ -310,9 +298,8 @@ class Service:
                 people = [seat for seat in (0, 1) if not seats.is_agent(seat)]
                 dealt = all(act.what not in ("set_up", "load") for act in session.acts[: session.at])
                 if len(people) == 1 and dealt and not session.practice:
-                    same = len(self._sat) == 1
-                    told = tell_frame(session, people[0], seats.who[1 - people[0]], same=same)
-                    self._unwritten = partial(person.keep, *told)
+                    other, same = seats.who[1 - people[0]], len(self._sat) == 1
+                    self._unwritten = partial(person.change, tell_frame(session, people[0], other, same=same))
             if self._unwritten is not None:
                 self._unwritten()
                 self._unwritten, self.unkept = None, ""
@@ -365,9 +352,8 @@ class Service:
                     (stroke,) = cue_strokes(decided, session.position)
                     if session.frame.in_hand and np.isfinite(decided.place[0]).all():
                         session.place(*decided.place[0].tolist())
-                    nominated, open_to = int(decided.nominate[0]), nominations_of(session.frame)
-                    sensible = nominated in open_to or (nominated == DECLINED and session.frame.free_ball)
-                    session.play(stroke, nominated=nominated if sensible else AUTO)
+                    named, open_to = int(decided.nominate[0]), nominable(session.frame)
+                    session.play(stroke, nominated=named if named in open_to else AUTO)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""

@@ -37,7 +37,9 @@ def game(tmp_path_factory):
     strokes = [session.acts[k].played for k in session.strokes]
     judge = sn.player("tactician").at(session.options_with("club"))
     file = tmp_path_factory.mktemp("review") / "frame.html"
-    Replay(strokes, players=("Ann", "Bob"), judge=judge, luck=session.luck).save(file)
+    Replay(
+        strokes, players=("Ann", "Bob"), judge=judge, luck=[act.luck for act in session.acts if act.played]
+    ).save(file)
     return advice, file, [one.player for one in strokes]
 
 

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from snooker_env.play import server as module
-from snooker_env.play.levels import USUAL
+from snooker_env.play.person import USUAL
 from snooker_env.play.routes import GET, POST
 from snooker_env.play.service import FRIEND, PERSON, WATCHER
 from tests.playing import EASY, STRAIGHT, refused, served
@@ -238,7 +238,7 @@ def test_a_watcher_reads_and_posts_nothing(hosted):
         refused(watcher(f"api/{name}", {}), 403, "the host alone")
     assert {name for name in GET if watcher(f"api/{name}")[0] != 200} == {
         "replay",
-        "replay.html",
+        "replay_page",
     }  # of no stroke, and without a review
     assert watcher("api/scene")[1]["invites"] == [] and hosted("api/state")[1]["revision"] == before
     assert watcher("api/state")[1]["labels"] == ["Player 1", USUAL]

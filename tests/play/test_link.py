@@ -16,9 +16,8 @@ from snooker_env.game.balls import BLACK, CUE, PINK
 from snooker_env.game.fouls import AUTO
 from snooker_env.planning import Position
 from snooker_env.play import link as module
-from snooker_env.play.grid import STEP, numbers_of, steps_of, stroke_of
 from snooker_env.play.link import LONGEST, open_link, write_link
-from snooker_env.play.session import DECLINED, Session
+from snooker_env.play.session import DECLINED, STEP, Session, numbers_of, steps_of, stroke_of
 from snooker_env.players.table_report import nominations_of
 from snooker_env.simulation import SimulationError
 from tests.play.test_session import standing
@@ -67,12 +66,12 @@ def test_a_game_is_played_again_bit_by_bit(game):
         for here, there in zip(session.acts[1:], other.acts[1:], strict=True):
             assert (there.state, there.asked) == (here.state, here.asked)
             assert (there.played and there.played.cue) == (here.played and here.played.cue)
-        for name in ("noise", "practice", "cue", "game", "state"):
+        for name in ("noise", "practice", "cue", "options", "state"):
             assert getattr(other, name) == getattr(session, name)
         assert write_link(other) == link and other.begun == 2
-        while other.undo():
+        while other.go_to(other.at - 1):
             pass
-        assert other.state == session.acts[0].state and other.redo()
+        assert other.state == session.acts[0].state and other.go_to(other.at + 1)
         asked = [item for act in session.acts for item in act.asked.items()]
         kinds |= {name for name, value in asked if value not in (None, False, AUTO)}
     assert kinds >= KINDS - ({"choice", "declare"} if game == "shoot_out" else set())
@@ -107,7 +106,7 @@ def test_a_game_begins_at_the_last_new_table_and_ends_before_what_was_undone():
     first = session.state
     session.play(CueStroke(speed=2.0, aim=STRAIGHT))
     session.play(CueStroke(speed=1.0, aim=1.0))
-    session.undo()
+    session.go_to(session.at - 1)
     other = Session()
     open_link(other, write_link(session))
     assert other.acts[0].state == first and len(other.acts) == 2
@@ -136,16 +135,17 @@ def test_sixty_strokes_have_less_than_two_kilobytes():
 def test_another_processor_takes_the_places_of_the_link(monkeypatch):
     """Its own are elsewhere by as much as last bits may come to; further off is said, with the stroke."""
     session = anything(7, acts=30, agreed=True)
-    link, settle = write_link(session), module.Told.settle
+    link, settle = write_link(session), Session._settle
 
     def shake(by):
-        def settled(self, tables, before):
-            moved = (np.abs(tables.positions[0] - before) > 1e-3).any(axis=1) & tables.on_table[0]
-            tables.positions[0, moved] += rng.uniform(-by, by, (moved.sum(), 2))
-            settle(self, tables, before)
+        def settled(self, before):
+            settle(self, before)
+            places, on_table = self.tables.positions[0], self.tables.on_table[0]
+            moved = (np.abs(places - before) > 1e-3).any(axis=1) & on_table
+            places[moved] += rng.uniform(-by, by, (moved.sum(), 2))
 
         rng = np.random.default_rng(0)
-        monkeypatch.setattr(module.Told, "settle", settled)
+        monkeypatch.setattr(Session, "_settle", settled)
 
     shake(2e-4)
     other = Session()

@@ -320,7 +320,7 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
         shown("page.skip()")
     stopped = shown("page.state.strokes")
     time.sleep(1.0)
-    assert shown("page.state.strokes") == stopped >= 3 and "press Continue" in shown.words
+    assert shown("page.state.strokes") == stopped >= 3 and "is waiting for Continue" in shown.words
     shown.page.click("#go")
     shown.until("page.moving && page.state.strokes > argument", stopped)
     shown.line("api/players", PERSONS)

@@ -10,8 +10,7 @@ import pytest
 from snooker_env.advice import CueStroke, Recorded
 from snooker_env.planning import Position
 from snooker_env.play.__main__ import main
-from snooker_env.play.levels import LEVELS
-from snooker_env.play.person import Person
+from snooker_env.play.person import LEVELS, Person
 from tests.play.shown import SETTLED, Shown
 from tests.playing import EASY, STRAIGHT
 

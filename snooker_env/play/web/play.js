@@ -94,7 +94,7 @@ class Page {
     by("next").onclick = () => this.once(() => (this.state.by_link ? this.friend.begin() : this.go("new", { breaker: 1 - this.state.breaker, seed: seed() })));
     by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.txt", await this.share.link(), "text/plain"); });
-    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
+    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", (await ask("replay_page")).html, "text/html"); });
     by("load").onclick = () => by("file").click();
     by("file").onchange = () => this.try(async () => {
       const [file] = by("file").files;

@@ -64,7 +64,6 @@ export class ServerError extends Error {
 export async function ask(name, body, query = "") {
   const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
   const reply = await fetch(`api/${name}${query}`, options).catch(() => { throw new Error(DOWN); });
-  if (name === "replay.html" && reply.ok) return reply.text();
   const found = await reply.json();
   if (!reply.ok) throw new ServerError(found.error);
   return found;
