@@ -1,18 +1,15 @@
 """Does each command end without a word where nobody reads its output on, as in ``... | head``?"""
 
-import json
 import os
 import subprocess
 import sys
 
 import pytest
 
-STROKE = {
-    "position": {"cue": [0.1, 0.2], "black": [-0.3, 1.0]},
-    "ball": 21,
-    "pocket": "top left",
-    "potted": True,
-}
+import snooker_env as sn
+from snooker_env.advice import Recorded, write_strokes
+
+AT = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
 COMMANDS = {
     "coach": "snooker_env.advice coach mine.json --cue real --physics paper --table match",
     "benchmark": "snooker_env.benchmark tasks",
@@ -25,8 +22,7 @@ COMMANDS = {
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_reader_that_leaves_ends_a_command(name, tmp_path):
-    kept = {"format": "snooker-strokes", "version": 1, "strokes": [STROKE]}
-    (tmp_path / "mine.json").write_text(json.dumps(kept))
+    write_strokes(tmp_path / "mine.json", [Recorded(position=AT, ball=21, pocket=4, potted=True)])
     read, write = os.pipe()
     os.close(read)
     path = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])

@@ -7,7 +7,7 @@ from ..players.cue_stroke import CueStroke
 from .ask import advise
 from .coach import coach
 from .outcomes import Suggestion, destinations
-from .recorded import Recorded, read_strokes
+from .recorded import Recorded, read_strokes, write_strokes
 from .stroke_words import POCKET_WORDS
 
 __all__ = [
@@ -19,4 +19,5 @@ __all__ = [
     "coach",
     "destinations",
     "read_strokes",
+    "write_strokes",
 ]

@@ -2,8 +2,9 @@
 
 import base64
 import binascii
+import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from math import atan2, hypot, pi, radians, remainder
@@ -13,7 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from .._lib.check import choice, integer, number, refuse, refuse_what, truth
-from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json
+from .._lib.files import MOST_JSON, in_file, read_bytes, strict_json, write_atomic
 from .._lib.types import Bools, CueKind, Floats
 from ..game.balls import CUE, N_BALLS, BallOn, mask_of_present, next_on
 from ..geometry import AIM_X, AIM_Y, POCKET_AIMS, POCKETS
@@ -183,6 +184,29 @@ def _check_cue(played: object) -> dict[str, float]:
         choice("field of played", key, CUE_PARTS)
     ends = {"speed": (0.0, FASTEST_CUE), "side": (-1.0, 1.0), "top": (-1.0, 1.0), "elevation": (0.0, pi / 2)}
     return {name: number(f"played.{name}", played.get(name, 0.0), *ends.get(name, ())) for name in CUE_PARTS}
+
+
+def write_strokes(path: str | Path, strokes: Iterable[Recorded]) -> None:
+    """Write strokes as JSON, whole or not at all; ``read_strokes`` reads them.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file. OSError if it cannot be written.
+    strokes : iterable of Recorded
+        The strokes of one player, in order.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Recorded, write_strokes
+    >>> at = sn.Position(cue=(0.1, 0.2), black=(-0.3, 1.0))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_strokes(f"{folder}/mine.json", [Recorded(position=at, ball=21, pocket=4, potted=True)])
+    """
+    kept = {"format": FORMAT, "version": VERSIONS[FORMAT], "strokes": [one.to_dict() for one in strokes]}
+    write_atomic(path, json.dumps(kept, allow_nan=False) + "\n")
 
 
 def read_strokes(path: str | Path, *, player: int | None = None) -> list[Recorded]:

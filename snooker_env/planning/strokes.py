@@ -20,7 +20,8 @@ from ..physics.parameters import Physics
 from ..tasks import box_actions as box
 from ..tasks import stroke
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
-from ..tasks.discrete_actions import SIZE, Choices, masks
+from ..tasks.discrete_actions import POTS, SIZE, Choices, masks
+from ..tasks.frames import sayings
 from ..tasks.kernel_arrays import C_END_MASS, pack_cue
 from ..tasks.options import Options, Rules
 from ..tasks.stroke import ShotBuffers, row_of
@@ -35,6 +36,7 @@ CODES: dict[str, tuple[int, ...]] = {
     "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),
 }  # the codes of what is said with a stroke
 EVERY = "an environment with **snooker_env.players.VISITS, or in frames **snooker_env.players.FRAMES, reads every stroke"
+SAME = 1e-6  # how little two strokes differ that are one
 
 
 def _column(column: int, about: str) -> Any:
@@ -133,20 +135,22 @@ class Strokes:
     def actions(self, options: Options, positions: PositionsLike) -> Floats:
         """Convert to actions of an environment, with all that is said: float64 (n, k) in [-1, 1].
 
-        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``positions``: n of them, on which the
-        meaning of a place and a nomination depends. ValueError if the environment reads other actions, or a stroke, a
-        decision or a declaration that they do not hold. A place and a nomination that they do not hold are left out."""
+        ``options``: of the environment, with ``action="box"``. ``positions``: n of them, on which the meaning of a place, a
+        nomination, a pot and an aim from a target line depends. ValueError if the environment reads other actions, or a
+        stroke, a decision or a declaration that they do not hold: with ``aim="pot"`` they hold strokes along its lines alone.
+        A place and a nomination that they do not hold are left out."""
         reads, at = options.rules.actions, Positions.of(positions)
         if len(at) != len(self):
             allowed = f"must be {len(self)}, one for each stroke"
             raise refuse_what("positions", f"{len(at)} positions", allowed)
         if not isinstance(reads, box.Actions):
             raise refuse("options.action", options.action, f'must be "box": {EVERY}')
-        if reads.aim != "absolute":
-            raise refuse("options.aim", reads.aim, f'must be "absolute": {EVERY}')
         turns, least = self.aim / np.pi, box.MIN_SPEED
         speeds = 2.0 * (self.speed - least) / (box.MAX_SPEED - least) - 1.0
         parts = [speeds, 2.0 * self.side, 2.0 * self.top, turns - 2.0 * np.round(0.5 * turns)]
+        if reads.aim == "pot":
+            logs = np.log(np.maximum(self.speed, least) / box.SLOWEST) / np.log(box.FASTEST / box.SLOWEST)
+            parts[:3] = 2.0 * logs - 1.0, self.side / box.MOST_SIDE, self.top / box.MOST_TOP
         for name, holds, least in (
             ("elevation", reads.elevation, 0.0),
             ("decision", "decision" in reads.says, PLAY),
@@ -170,7 +174,37 @@ class Strokes:
         if reads.declares:
             says = np.where(self.declare == CLAIMS, 1.0, -1.0)
             parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, says))
-        return np.clip(np.stack(parts, axis=1), -1.0, 1.0)  # removes rounding errors
+        actions = np.stack(parts, axis=1)
+        if reads.aim == "target":
+            actions[:, 3] = self._off_target(options.rules, at, actions)
+        actions = np.clip(actions, -1.0, 1.0)  # removes rounding errors
+        if reads.aim == "pot":
+            actions[:, 3] = self._picks(options.rules, at, actions)
+        return actions
+
+    def _off_target(self, rules: Rules, at: Positions, actions: Floats) -> Floats:
+        """The component of an aim from the target line, on which an action with 0 there is played."""
+        lines = _read_with(0.0, rules, at, actions.clip(-1.0, 1.0))[:, AIM]
+        off = _wrap(self.aim - lines) / box.TARGET_SPAN
+        if (far := np.abs(off) > 1.0 + 1e-9).any():
+            k = int(np.argmax(far))
+            allowed = f"must be within 3 degrees of the target line, {lines[k]:.6g} rad; {EVERY}"
+            raise refuse(f"aim[{k}]", float(self.aim[k]), allowed)
+        return off
+
+    def _picks(self, rules: Rules, at: Positions, actions: Floats) -> Floats:
+        """The component that picks the line of each stroke, the first on which an action is that stroke."""
+        picks = np.full(len(self), np.nan)
+        for line in range(POTS):
+            rows, pick = np.flatnonzero(np.isnan(picks)), (line + 0.5) / POTS
+            off = _read_with(pick, rules, at[rows], actions[rows]) - self.values[rows]
+            off[:, AIM] = _wrap(off[:, AIM])
+            picks[rows[(np.abs(off) < SAME).all(axis=1)]] = pick
+        if (lost := np.isnan(picks)).any():
+            k = int(np.argmax(lost))
+            allowed = f'must be a stroke along one of the lines of aim="pot"; {EVERY}'
+            raise refuse(f"strokes[{k}]", self.values[k].round(6).tolist(), allowed)
+        return picks
 
     def _place(self, at: Positions) -> list[Floats]:
         x, y = np.where(np.isnan(self.place), at.positions[:, 0], self.place).T
@@ -205,6 +239,18 @@ def _off_the_tip(strokes, cues):
     """Turn the aims of strikes, the cue's, into the directions in which the cue ball leaves the tip [rad]."""
     for j in range(strokes.shape[0]):
         strokes[j, AIM] += squirt(strokes[j, SIDE], cues[row_of(j, cues), C_END_MASS])
+
+
+def _wrap(angles: Floats) -> Floats:
+    return angles - 2.0 * np.pi * np.round(angles / (2.0 * np.pi))
+
+
+def _read_with(aim: float, rules: Rules, at: Positions, actions: Floats) -> Floats:
+    """The strokes (n, 5) that checked actions mean with this component of the aim."""
+    actions = actions.copy()
+    actions[:, 3] = aim
+    nominated = sayings(rules, actions, at.game)[0] if at.of_frames else None
+    return decode(rules, at, np.arange(len(at)), actions, nominated)[0]
 
 
 def decode(

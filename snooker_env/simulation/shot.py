@@ -21,6 +21,8 @@ else:  # matplotlib is loaded at its first use
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """Data type of a logged event: ``time`` [s], ``kind`` (an ``EventKind``, which explains ``i``, ``j``)."""
+EVENT_IN_SPACE = np.dtype([*EVENT.descr, ("z", np.float64)])
+"""The same with the height of ball ``i`` above the bed [m]: of shots with ``Physics.flight`` that have their path."""
 
 
 class SimulationError(RuntimeError):
@@ -75,7 +77,8 @@ class Shot:
     duration : float
         Time until everything is at rest, spin included [s]; with ``Physics.spin_decel`` 0, without spin.
     events : structured array (k,)
-        Events in order: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there).
+        Events in order: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there); with
+        ``Physics.flight`` also ``z``, the height of ball i [m].
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
     physics, table
@@ -99,6 +102,14 @@ class Shot:
     segments: Floats = field(repr=False)
     physics: Physics = field(repr=False)
     table: Table | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.physics.flight and len(self.segments) and self.events.dtype == EVENT:
+            events = np.empty(len(self.events), EVENT_IN_SPACE)
+            for name in EVENT.names or ():
+                events[name] = self.events[name]
+            events["z"] = self.at(events["time"])[0][np.arange(len(events)), events["i"], 2]
+            object.__setattr__(self, "events", events)
 
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
         """Positions, velocities and spins of all balls at one time [s], or at m times.

@@ -118,7 +118,7 @@ class Actions:
             raise refuse_what(field, f"array of shape {a.shape}", allowed)
         a = a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
         far = np.abs(a)
-        if not (most := far.max()) <= 1.0 + ROUNDING:  # NaN is not, either
+        if not (most := far.max(initial=0.0)) <= 1.0 + ROUNDING:  # NaN is not, either
             k = int(np.argmin((far <= 1.0 + ROUNDING).all(axis=-1)))
             bad = ("action", a) if n is None else (f"actions[{k}]", a[k])
             raise refuse(bad[0], bad[1].tolist(), _BOUNDS)

@@ -58,10 +58,12 @@ Planner({"aim": "north"}) | aim | 'north' | must
 Planner({}, threads=0) | threads | 0 | must
 Planner({}, noise="loud") | noise | 'loud' | must
 Planner(?) | env_or_options | a  | must be an environment of snooker_env | CARTPOLE; None; 3; "Snooker-v0"
-action([2.0, 0.0, 0.0, 0.3, 0.2], aim="absolute") | elevation | 0.2 | must be left out
-action([2.0, 0.0, 0.0, 0.3, 0.2], aim="absolute") | elevation | 0.2 | **snooker_env.players.VISITS
-action(SOFT) | options.aim | 'pot' | must be "absolute"
-action(SOFT, aim="target") | options.aim | 'target' | **snooker_env.players.VISITS
+action([2.0, 0.0, 0.0, 0.3, 0.2]) | elevation | 0.2 | must be left out
+action(SOFT) | strokes[0] | [2.0, 0.0, 0.0, 0.3, 0.0] | must be a stroke along one of the lines of aim="pot"
+action(?) | strokes[0] | [ | **snooker_env.players.VISITS | SOFT; [6.0, 0.0, 0.0, 0.3, 0.0]; [2.0, 0.4, 0.0, 0.3, 0.0]
+action([2.0, 0.0, 0.0, 0.3, 0.2]) | elevation | 0.2 | **snooker_env.players.VISITS
+action(SOFT, aim="target") | aim[0] | 0.3 | must be within 3 degrees of the target
+action(SOFT, aim="target") | aim[0] | 0.3 | **snooker_env.players.VISITS
 action(SOFT, action="discrete") | options.action | 'discrete' | **snooker_env.players.VISITS
 Strokes([SOFT]).actions(sn.Options(), MANY[[0, 0]]) | positions | 2 positions | must be 1, one for each stroke
 Strokes([SOFT])[0] | rows | 0 | must be a slice, a mask or an array of rows
