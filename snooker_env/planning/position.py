@@ -79,6 +79,8 @@ class Position:
             raise refuse_what("reds", f"{len(reds)} places", f"must be at most {N_REDS}")
         put("reds", tuple(map(tuple, reds.tolist())))
         positions, on_table = self._layout()
+        if not (self.over or self.on or on_table[1:].any()):
+            raise refuse_what("reds and colours", "no ball", "must hold at least one, unless over=True")
         if self.cue is None and self.in_hand and not self.over:
             on_table[CUE] = True
             positions[CUE] = place_cue(positions, on_table, *SPOTS[CUE].tolist())

@@ -23,7 +23,7 @@ PORT = 8147  # always the same by default, since a browser keeps scores by the p
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     about = """Play snooker in the browser, against an agent or yourself, from any position, with an advisor. Programs can
-        play too (docs: The protocol). The server listens on 127.0.0.1 only, unless --host is given; it prints the address
+        play too (docs/play/protocol.md). The server listens on 127.0.0.1 only, unless --host is given; it prints the address
         to open."""
     parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
     add = parser.add_argument
@@ -32,8 +32,9 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
         and print the addresses to pass on"""
     add("--host", nargs="?", const="", metavar="ADDRESS", help=host)
     add("--no-browser", action="store_true", help="only print the address")
-    agent = """an agent for the page's menu: a name of snooker_env.players(), a model's .zip, or MODULE:CLASS. The first
-        one is your opponent (default: Walter) and, if it knows frames, your adviser. May be given more than once"""
+    agent = f"""an agent for the page's menu: a name of snooker_env.players(), a model's .zip, MODULE:CLASS, or one of the
+        page's own, {", ".join(BY_NAME)}. The first one is your opponent (default: {USUAL}) and, if it knows frames, your
+        adviser. May be given more than once"""
     add("--agent", action="append", default=[], metavar="NAME", help=agent)
     add_model_options(parser)
     folder = os.environ.get("APPDATA" if os.name == "nt" else "XDG_DATA_HOME") or "~/.local/share"
@@ -49,11 +50,13 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
 def service_of(args: argparse.Namespace) -> Service:
     seed = secrets.randbits(62) if args.seed is None else args.seed
     session = Session(layout=args.layout, seed=seed, flight=args.flight)
-    shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
-    agents = dict(zip(shown, players_of(args.agent, args.trust, options_of_words(args.options)), strict=True))
+    first = args.agent[0] if args.agent else USUAL
+    names = [name for name in args.agent if name not in BY_NAME]
+    shown = [Path(name).stem if name.endswith(".zip") else name for name in names]
+    agents = dict(zip(shown, players_of(names, args.trust, options_of_words(args.options)), strict=True))
     seats = Seats(agents, friends=args.host is not None)
-    seats.sit([PERSON, next(iter(agents), USUAL)])
-    session.noise[:] = ["amateur", "professional" if agents else BY_NAME[USUAL].noise]
+    seats.sit([PERSON, first if first in BY_NAME else shown[0]])
+    session.noise[:] = ["amateur", BY_NAME[first].noise if first in BY_NAME else "professional"]
     return Service(session, seats, Person(args.person))
 
 
@@ -103,7 +106,7 @@ def main(argv: list[str] | None = None) -> int:
             print(f"Snooker is played at\n\n    {server.address}\n")
             if args.host is not None:
                 _invite(server)
-            print("Programs play at its api/ (docs: The protocol). Ctrl-C stops the server.", flush=True)
+            print("Programs play at its api/ (docs/play/protocol.md). Ctrl-C stops the server.", flush=True)
             if not args.no_browser and not webbrowser.open(server.address):
                 print(f"No browser was found. Open {server.address} in one.", flush=True)
             server.serve_forever(poll_interval=0.2)

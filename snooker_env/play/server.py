@@ -142,12 +142,14 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise RefusedError(403, "Origin must be this server's own")
         if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
             raise RefusedError(403, "Sec-Fetch-Site must be same-origin, or none")
-        token, _, name = parts.path.removeprefix("/").partition("/")
+        token, slash, name = parts.path.removeprefix("/").partition("/")
         name = re.sub("^/+(?=api/)", "", name)  # "/api/state" may be appended to the address, which ends so
         self.who = self.server.whose(token if parts.path.startswith("/") else "")
         if not self.who:
             raise RefusedError(403, "the address must hold this server's token: open the one that it printed")
         self.server.waiting.pop(self.connection, None)
+        if not slash:  # the page's own files are named from there
+            raise RefusedError(308, "the address must end in /", Location=f"/{token}/")
         known = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
         if name not in known[self.command]:
             other = next((method for method, names in known.items() if name in names), None)

@@ -133,12 +133,13 @@ words(black=(NAN, 0.0)) | black[0] | nan | must
 words(brown=3.0) | brown | shape () | must
 words(cue="centre") | cue | centre | must
 words(reds=[(0.04 * k - 0.5, 0.3) for k in range(16)]) | reds | 16 places | must be at most 15
+Position(cue=(0.1, 0.2)) | reds and colours | no ball | must hold at least one
 words(on="puce") | on | 'puce' | must be one of
 words(on="black") | on | 'black' | must be 'red' or 'any_colour'
 words(on="blue") | on | 'blue' | must name balls of which one
 words(reds=[], on="black") | on | 'black' | must be 'any_colour' or 'pink'
 words(cue=None) | cue | None | must be on the table
-words(reds=[], pink=None, black=None) | on | 'nothing' | must name balls
+words(reds=[], pink=None, black=None) | reds and colours | no ball | must hold at least one
 words(points=156) | points | 156 | must
 words(in_hand=1) | in_hand | 1 | must be True or False
 words(in_hand=True, cue=(0.0, 0.0)) | in_hand | True | must be False with the cue ball at

@@ -1,5 +1,6 @@
 """Does the server answer a request as the protocol says, and does its command begin and end well?"""
 
+import http.client
 import re
 import signal
 import socket
@@ -8,9 +9,12 @@ import sys
 
 import pytest
 
+from snooker_env.play import __main__ as command
 from snooker_env.play import server as module
 from snooker_env.play.__main__ import main
+from snooker_env.play.person import BY_NAME
 from snooker_env.play.routes import GET, POST
+from snooker_env.play.service import PERSON
 from tests.playing import refused
 from tests.processes import ROOT
 
@@ -34,6 +38,24 @@ def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(
         assert kept == ["nosniff", "DENY", "no-store"]
         assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
     assert all(line(name)[0] == 200 for name in module.FILES)
+
+
+def test_an_address_without_its_last_slash_leads_to_the_page(line):
+    own = http.client.HTTPConnection("127.0.0.1", line.server.server_port, timeout=20)
+    own.request("GET", f"/{line.server.token}")
+    found = own.getresponse()
+    assert (found.status, found.getheader("Location")) == (308, f"/{line.server.token}/")
+    own.close()
+
+
+@pytest.mark.parametrize(("agent", "noise"), [("Vera", None), ("ghost_ball", "professional")])
+def test_an_agent_is_a_player_or_an_opponent_of_the_page(agent, noise):
+    service = command.service_of(command._arguments(["--agent", agent, "--seed", "1"]))
+    try:
+        assert service.seats.who == [PERSON, agent]
+        assert service.session.noise == ["amateur", noise or BY_NAME[agent].noise]
+    finally:
+        service.close()
 
 
 def test_only_known_methods_are_answered(line):
