@@ -49,7 +49,7 @@ def no_display(monkeypatch):
     ],
 )
 @pytest.mark.parametrize(
-    ("observation", "aim"), zip(observations.OBSERVATIONS, (*AIMS, "absolute", "pot"), strict=True)
+    ("observation", "aim"), list(zip(observations.OBSERVATIONS, (*AIMS, "absolute", "pot"), strict=True))
 )
 def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict):
     arguments = {**viewed(observation), "render_mode": render_mode, "aim": aim, "layout": "random:2"}

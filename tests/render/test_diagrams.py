@@ -112,6 +112,8 @@ def test_what_cannot_be_drawn_is_refused_and_no_figure_is_left(screw, monkeypatc
     many = sn.simulate(np.arange(46.0).reshape(23, 2), np.zeros((23, 2)), np.zeros((23, 3)), None)
     refused(lambda: many.plot(), "balls of the shot", "23", "must be at most 22")
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(ImportError, match=r'diagrams need matplotlib; .* pip install -e "\.\[plot\]"'):
+    with pytest.raises(
+        ImportError, match=r'diagrams need matplotlib; .* pip install -c constraints.txt -e "\.\[plot\]"'
+    ):
         screw.plot()
     assert not plt.get_fignums()
