@@ -154,7 +154,10 @@ class FreeGame:
         asked = {"n": integer("n", n, 1, MOST_ADVICE)}
         strokes = answer(self._service, POST["advise"], asked)["suggestions"]
         fields = [{name: one[name] for name in STROKE if one.get(name) is not None} for one in strokes]
-        lines = [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
+        now = answer(self._service, GET["state"], {})
+        wins = zip(now["choices"], now["choice_wins"], strict=True)
+        lines = [f"{what}: win chance {100.0 * one:.0f} %" for what, one in wins if one is not None]
+        lines += [f"{one['words']}: {json.dumps(its)}" for one, its in zip(strokes, fields, strict=True)]
         return "\n".join(lines)
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass, fields
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +144,20 @@ class Position:
 
 _NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
 _COLOURS = range(N_REDS + 1, len(SPOTS))
+_MADE = Position.__init__
+
+
+@wraps(_MADE)
+def _init(self: Position, *args: Any, **fields_: Any) -> None:
+    """``Position.__init__`` whose TypeError says that the reds are one list."""
+    for name in fields_:
+        if name not in (*_NAMES, "table"):
+            hint = "; the reds are one list, reds=[(x, y), ...]" if name.startswith("red") else ""
+            raise TypeError(f"Position got an unexpected keyword argument {name!r}{hint}")
+    _MADE(self, *args, **fields_)
+
+
+Position.__init__ = _init
 
 
 def _name_on(on: object, balls: int) -> str:

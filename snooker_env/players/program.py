@@ -184,9 +184,10 @@ class _Lines:
     def _read(self, process, answers):
         with process.stdout:
             line = b" "
-            while line and len(line) <= LONGEST and process is self._process:
+            while line and len(line) <= LONGEST:
                 line = process.stdout.readline(LONGEST + 1)
-                answers.put(line)
+                if process is self._process:  # once closed, it may still say what it has to
+                    answers.put(line)
 
 
 def _write(pipe, text, read_all):

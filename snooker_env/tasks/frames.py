@@ -415,6 +415,15 @@ class Frames(Tables):
         self._replies[k], self.begun[k], self.nominated[k] = 0, True, AUTO
         self.due[k] = self.through[k] = False
 
+    def text(self, k: int) -> str:
+        frame = self.frame(k)
+        *won, _ = self.game[k, _OF_MATCHES].tolist()
+        match = f"frames {won[0]} - {won[1]}   " if self.rules.frames else ""
+        on, wins = frame.ball_on.name.lower().replace("_", " "), frame.winner
+        turn = f"player {frame.striker}, break {frame.break_points}   on: {on}"
+        ended = "" if wins is None else f"   player {wins} wins"
+        return f"{match}{frame.scores[0]} - {frame.scores[1]}   {turn}{ended}"
+
 
 TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Frames}
 """Which class plays each ``task``."""

@@ -411,9 +411,6 @@ class Tables(ABC):
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on; the caller draws constants."""
 
+    @abstractmethod
     def text(self, k: int) -> str:
         """One line of text for pictures."""
-        now, on = self.standing(k), BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
-        scores, ended = " - ".join(map(str, now["scores"])), now["winner"]
-        turn = f"player {now['next_player']}, break {now['break_points']}   on: {on}"
-        return f"{scores}   {turn}" + ("" if ended is None else f"   player {ended} wins")

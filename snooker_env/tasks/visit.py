@@ -8,7 +8,7 @@ import numpy as np
 from .._lib.jit import entry, kernel
 from .._lib.types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
-from ..game.balls import N_BALLS, balls_on_kernel, bits, next_on_kernel
+from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.fouls import FLAG, VISIT
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
@@ -185,3 +185,7 @@ class Visits(Tables):
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
+
+    def text(self, k: int) -> str:
+        on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
+        return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

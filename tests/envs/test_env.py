@@ -136,6 +136,15 @@ def test_it_is_made_by_either_name():
     assert gymnasium.make("Snooker-v0").unwrapped.spec.id == "Snooker-v0"
 
 
+def test_text_says_how_the_game_stands():
+    visit = SnookerEnv(render_mode="ansi", layout="break_off")
+    visit.reset(seed=1)
+    assert "break 0   on: red   reds: 15" in visit.render()
+    match = match_env(render_mode="ansi", task="match", frames=3)
+    match.reset(seed=1)
+    assert "frames 0 - 0   0 - 0   player 1, break 0   on: red" in match.render()
+
+
 @pytest.mark.parametrize(("mode", "kind"), [("rgb_array", np.ndarray), ("ansi", str), ("human", type(None))])
 def test_rendering_gives_what_the_mode_says_and_changes_nothing(mode, kind, screen):
     env, blind = (SnookerEnv(render_mode=m, layout="random:2", noise="club") for m in (mode, None))

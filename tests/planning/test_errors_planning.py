@@ -172,6 +172,8 @@ def test_positions_that_cannot_be_are_refused(tmp_path):
     names = vars(planning) | globals() | {"NAN": np.nan, "words": lambda **words: Position(**FULL | words)}
     names |= {"said": lambda **words: Position.from_dict(GOOD | words)}
     refuse_each(POSITIONS, names | {"arrays": lambda **changes: Positions(*(whole | changes).values())})
+    with pytest.raises(TypeError, match=r"argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
+        Position(cue=(0.0, 0.2), red=(0.1, 0.3))
     assert Position(**FULL, yellow=(5.0, 5.0), table=None).yellow == (5.0, 5.0)
     file = tmp_path / "wrong.json"
     for change, field, value, allowed in (

@@ -181,7 +181,6 @@ def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
     assert toy() == (LOADED, "")
 
 
-@pytest.mark.slow
 def test_another_kernels_machine_code_is_not_run_under_this_ones_name(toy):
     """Each file is whole; a double would be halved."""
     toy()

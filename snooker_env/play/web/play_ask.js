@@ -117,8 +117,8 @@ export class Advisor {
     button.textContent = "Hint …";
     try {
       const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
-      this.noise = found.noise;
       if (found.suggestions && revision === app.state.revision) {
+        this.noise = found.noise;
         if (!app.state.practice) app.state.hints[app.state.striker]++;  // as the server does
         this.show(found);
       }
