@@ -45,7 +45,13 @@ def foul(one):
 
 @pytest.mark.parametrize("positions", [after_break_offs, opened])
 @pytest.mark.parametrize(
-    ("agent", "each"), [("random", 2), ("ghost_ball", 2), ("planner_500", 10), ("search", 10)]
+    ("agent", "each"),
+    [
+        ("random", 2),
+        ("ghost_ball", 2),
+        ("planner_500", 10),
+        pytest.param("search", 10, marks=pytest.mark.slow),
+    ],
 )
 def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions, agent, each):
     for seed, position in enumerate(positions()[::each]):

@@ -84,7 +84,12 @@ ALLOWED = {"balls": {"Your observation balls has an unconventional shape"}}
 
 @pytest.mark.parametrize(
     ("name", "render_mode"),
-    [*((name, None) for name in IDS), ("Snooker-v0", "rgb_array"), ("Snooker-v0", "ansi")],
+    [("Snooker-v0", None), ("Snooker-v0", "rgb_array"), ("Snooker-v0", "ansi")]
+    + [
+        pytest.param(name, None, marks=[pytest.mark.slow] * ("Frame" not in name))
+        for name in IDS
+        if name != "Snooker-v0"
+    ],
 )
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("longer", [{"elevation": True, "placement": True, "layout": "break_off"}])

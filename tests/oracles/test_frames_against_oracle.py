@@ -23,7 +23,12 @@ def agrees(name, frames, seed):
     return tally
 
 
-@pytest.mark.parametrize("name", KINDS)
+OFTEN = "random", "match", "attempt", "tables"
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in OFTEN)) for name in KINDS]
+)
 def test_every_stroke_is_judged_as_the_rules_say(name):
     agrees(name, 60 if KINDS[name].tables else 4, 1000)
 

@@ -1,6 +1,7 @@
 """Is every player a function of positions and a seed, in visits and in frames?"""
 
 import pickle
+from itertools import product
 from typing import ClassVar
 
 import numpy as np
@@ -38,8 +39,13 @@ def same(one, other):
     return all(np.array_equal(getattr(one, n), getattr(other, n), equal_nan=True) for n in names)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("where", ["visits", "break_off", "frames"])
+@pytest.mark.parametrize(
+    ("name", "where"),
+    [
+        pytest.param(name, where, marks=[pytest.mark.slow] * ("ppo" in name and where != "frames"))
+        for name, where in product(NAMES, ("visits", "break_off", "frames"))
+    ],
+)
 def test_every_player_is_a_function_of_a_position_and_a_seed(name, where):
     """However many are asked for, in whatever order, on whatever copy; what it ranks first it plays; positions stay."""
     if name.startswith("ppo_"):

@@ -73,6 +73,7 @@ def test_without_stderr_it_works_all_the_same(toys, without):
     assert toys(f"import sys; {without}; assert one(1.0) == 3.0") == ""
 
 
+@pytest.mark.slow
 def test_a_warm_up_that_no_terminal_shows_says_each_kernel(toys):
     code = (
         "from snooker_env._lib.jit import warming_up\nsmall(1.0)\n"

@@ -152,7 +152,7 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
         ("break_off", 12, 1.0, 1.0),
         pytest.param("break_off_six_red", 40, 1.0, 1.0, marks=pytest.mark.slow),
         pytest.param("break_off_shoot_out", 40, 1.0, 1.0, marks=pytest.mark.slow),
-        ("snookered", 10, 0.95, 0.95),
+        pytest.param("snookered", 10, 0.95, 0.95, marks=pytest.mark.slow),
         pytest.param("snookered_match", 30, 0.95, 0.95, marks=pytest.mark.slow),
         pytest.param("frames", 60, 0.99, 0.85, marks=pytest.mark.slow),
     ],

@@ -129,6 +129,7 @@ def test_velocities_spins_and_who_is_there(page):
             assert np.array_equal(found[:, 5], gone > t[:, None])
 
 
+@pytest.mark.slow
 def test_a_ball_turns_as_it_spins(page):
     """Against tiny steps of the simulation's own spins; and the same whichever way a time is come to."""
     r = np.array([(0.1, -1.0), (0.0, 0.3)])

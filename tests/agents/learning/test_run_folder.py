@@ -137,7 +137,10 @@ def test_failed_write_leaves_the_old_file_alone(tmp_path, monkeypatch, broken):
     assert path.read_bytes() == b"new" and [p.name for p in tmp_path.iterdir()] == ["file"]
 
 
-@pytest.mark.parametrize("full", ["checkpoint.pkl", "model.zip", "results.json"])
+RARE = [pytest.param(name, marks=pytest.mark.slow) for name in ("checkpoint.pkl", "model.zip")]
+
+
+@pytest.mark.parametrize("full", [*RARE, "results.json"])
 def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, capsys, full):
     """No unfinished file stays, and the run can go on."""
     out, original = tmp_path / "run", os.replace
