@@ -1,7 +1,7 @@
 """How is an agent trained to play Snooker-v0? Train one, compare it with simple players on held-out tables, and report the
 result.
 
-    python train.py                          MaskablePPO on the menu of strokes, from scratch: three minutes on two cores
+    python train.py                          MaskablePPO on the menu of strokes, from scratch: 3.5 minutes on two cores
     python train.py --steps 8192             a first try: half a minute
     python train.py --agent ppo_value --steps 1507328 --imitate 153600   policy and value of the planner: 45 minutes
     python train.py --agent stroke_value     a player that simulates no shots: 15 minutes
