@@ -214,6 +214,17 @@ def test_each_track_offers_its_own_tools_and_the_command_serves_them_on_standard
     assert not advice.is_error and '"speed"' in advice.content[0].text
 
 
+def test_after_a_foul_advice_tells_what_each_choice_is_worth():
+    game = FreeGame()
+    game.new({"layout": "opened", "advice": True})
+    game._service.session.practice = False  # two persons: an agent's foul cannot be ordered
+    answer(game._service, POST["stroke"], {"speed": 0.2, "aim": 0.0})
+    choices = game.state()["choices"]
+    told = [line.partition(": win chance ") for line in game.advise(1).splitlines()[: len(choices)]]
+    assert [what for what, *_ in told] == choices and len(choices) > 1
+    assert all(0 <= int(chance.removesuffix(" %")) <= 100 for *_, chance in told)
+
+
 def test_the_picture_shows_every_ball_in_its_colour_and_which_red_is_which():
     import pygame
 

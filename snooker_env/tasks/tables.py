@@ -101,9 +101,8 @@ class StepOutput:
 
     def keep_last(self, ended: Ints) -> None:
         """Keep the rows of the tables ``ended``, before the next episode overwrites them."""
-        for kept, row in zip(
-            self.last, (self.observations, self.reals, self.counts, self.masks), strict=True
-        ):
+        rows = self.observations, self.reals, self.counts, self.masks
+        for kept, row in zip(self.last, rows, strict=True):
             if len(row):
                 kept[ended] = row[ended]
 
@@ -159,9 +158,8 @@ class Tables(ABC):
         self.streams: Words = np.zeros((n, 2), np.uint64)  # key and counter of each table's random stream
         self.begun: Bools = np.zeros(n, np.bool_)  # which have an episode, possibly one that has ended
         self.reals: tuple[str, ...] = self.REALS  # with the constants if they are drawn
-        self.conditions: Floats = np.empty(
-            (0, CONDITIONS)
-        )  # constants drawn, (n, 8); no rows: they are fixed
+        # constants drawn, (n, 8); no rows: they are fixed
+        self.conditions: Floats = np.empty((0, CONDITIONS))
         _, self.cues, _, self.phys = rules.pack()
         self._read((rules.actions,), (rules.noise,))
         if rules.drawn:

@@ -83,6 +83,17 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
     assert not result["protocol"]["official"]
 
 
+def test_a_program_that_is_closed_may_finish_what_it_does(tmp_path):
+    kept = tmp_path / "kept.txt"
+    ends = (
+        f"for k in range(5): print(k, flush=True), time.sleep(0.05)\nopen({str(kept)!r}, 'w').write('whole')"
+    )
+    player = sn.player(program(tmp_path, f"for line in sys.stdin:\n {GOOD}\n{ends}")).at({})
+    assert player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [1]).speed == [1.0]
+    player.close()
+    assert kept.read_text() == "whole"
+
+
 def watching(tmp_path):
     """A program that keeps what it is sent, and a call that reads it."""
     kept = tmp_path / "seen.jsonl"

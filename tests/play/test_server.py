@@ -48,7 +48,7 @@ def test_an_address_without_its_last_slash_leads_to_the_page(line):
     own.close()
 
 
-@pytest.mark.parametrize(("agent", "noise"), [("Vera", None), ("ghost_ball", "professional")])
+@pytest.mark.parametrize(("agent", "noise"), [("Walter", None), ("ghost_ball", "professional")])
 def test_an_agent_is_a_player_or_an_opponent_of_the_page(agent, noise):
     service = command.service_of(command._arguments(["--agent", agent, "--seed", "1"]))
     try:
