@@ -3,7 +3,7 @@
 By default numba optimises every function with all that it calls, and makes machine code of it: for inner kernels,
 which never run alone, two fifths of a first shot's time. Here an entry kernel takes in each inner kernel once and
 optimises all together. An inner kernel also skips passes for closures and exceptions, reference counts, a compile
-for each value of a constant integer and numba's clocks. All kernels then compile in four fifths of the time.
+for each value of a constant integer and numba's clocks. It cannot raise, so that no call asks whether it did.
 
 This needs parts of numba that are not public; without them numba compiles as usual: the same results, later."""
 
@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import binding
-from numba.core import cgutils, codegen, compiler, lowering, sigutils, typed_passes, types
+from numba.core import base, cgutils, codegen, compiler, lowering, sigutils, typed_passes, types
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
 from numba.core.registry import CPUDispatcher
@@ -19,10 +19,12 @@ from numba.core.types.functions import BaseFunction, Function
 
 FIND = "get_call_type"  # the method of numba's functions that finds what they give for some types
 _PARTS = (
+    (base.BaseContext, ("declare_function", "get_arg_packer", "get_returned_value", "insert_func_defn")),
     (codegen.JITCodeLibrary, ("_optimize_functions", "_optimize_final_module")),
     (codegen.JITCPUCodegen, ("_function_pass_manager",)),
     (compiler.CompileResult, ("_replace", "entry_point")),
     (compiler.Compiler, ("compile_extra", "define_pipelines")),
+    (compiler.Flags(), ("_values",)),
     (lowering.Lower, ("alloca_lltype", "incref", "decref", "delvar")),
     (CPUDispatcher, ("add_overload", "get_call_template")),
     (BaseFunction, (FIND,)),
@@ -32,8 +34,16 @@ KNOWN = _ONE_FOR_ALL and all(hasattr(owner, name) for owner, names in _PARTS for
 """Whether this numba has the parts."""
 
 
-class _Library(codegen.JITCodeLibrary):
-    """Code to be linked into that of callers, and optimised there."""
+class _Code(codegen.JITCodeLibrary):
+    """Code of one kernel."""
+
+    def add_ir_module(self, ir_module):
+        """Take this code in, and let go of the module's text: some three million objects that refer to each other."""
+        super().add_ir_module(ir_module)
+        for function in ir_module.functions:
+            for block in function.blocks:
+                block.instructions, block.terminator = [], None
+            function.args, function.blocks = (), []
 
     def _optimize_functions(self, ll_module):
         """As numba does, but with one manager of passes for all functions, and none for declarations."""
@@ -42,6 +52,10 @@ class _Library(codegen.JITCodeLibrary):
         for function in ll_module.functions:
             if not function.is_declaration:
                 passes.run(function, builder)
+
+
+class _Library(_Code):
+    """Code to be linked into that of callers, and optimised there."""
 
     def finalize(self):
         """Let callers link it as it is; they link all that it calls too (see ``Inner.add_overload``)."""
@@ -54,7 +68,7 @@ class _Library(codegen.JITCodeLibrary):
         self._finalized = True
 
 
-class _EntryLibrary(codegen.JITCodeLibrary):
+class _EntryLibrary(_Code):
     """Code of an entry kernel, with that of all inner kernels that it uses."""
 
     def _optimize_final_module(self):
@@ -95,8 +109,21 @@ def _finding_once():
 
 _UNUSED = "WithLifting InlineClosureLikes RewriteDynamicRaises MakeFunctionToJitFunction FindLiterallyCalls "
 _UNUSED += "LiteralUnroll LiteralPropagationSubPipelinePass InlineOverloads NopythonRewrites "
-_UNUSED += "NoPythonSupportedFeatureValidation DumpParforDiagnostics"
+_UNUSED += "NoPythonSupportedFeatureValidation DumpParforDiagnostics IRLegalization AnnotateTypes"
 """Passes of numba for what no inner kernel has: contexts, closures, exceptions, literals, sums of arrays."""
+
+
+_HASH = hash(compiler.Flags())  # of the names of all flags
+
+
+class _Flags(compiler.Flags):
+    """Numba's flags, which are compared 50,000 times: first those that were set, then if need be all."""
+
+    def __eq__(self, other):
+        return (isinstance(other, _Flags) and self._values == other._values) or super().__eq__(other)
+
+    def __hash__(self):
+        return _HASH
 
 
 class _Lower(lowering.Lower):
@@ -126,9 +153,9 @@ class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
     def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
-        library, flags = _Library(targetctx.codegen(), "inner kernel"), flags.copy()
-        flags.no_compile = True
-        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
+        code, ours = _Library(targetctx.codegen(), "inner kernel"), _Flags(flags)
+        setattr(ours, "no_compile", True)  # noqa: B010 - a type checker does not know it
+        super().__init__(typingctx, targetctx, code, args, return_type, ours, locals)
 
     def define_pipelines(self):
         (passes,) = super().define_pipelines()
@@ -148,9 +175,25 @@ class _EntryCompiler(compiler.Compiler):
 
     def compile_extra(self, func):
         state: Any = self.state
+        state.flags = _Flags(state.flags)
         state.library = _EntryLibrary(state.targetctx.codegen(), func.__qualname__)
         state.library.enable_object_caching()
         return super().compile_extra(func)
+
+
+def _calling(called, libraries):
+    """What writes a call of ``called``: as numba does, but without the checks whether it raised, for it does not."""
+
+    def call(context, builder, _, args):
+        function = context.declare_function(builder.module, called)
+        result, error = function.args[0].type.pointee, function.args[1].type
+        result = cgutils.alloca_once(builder, result)
+        args = context.get_arg_packer(called.argtypes).as_arguments(builder, args)
+        builder.call(function, [result, error(None), *args])
+        return context.get_returned_value(builder, called.restype, builder.load(result))
+
+    call.libs = tuple(libraries)
+    return call
 
 
 class Inner(CPUDispatcher):
@@ -181,7 +224,12 @@ class Inner(CPUDispatcher):
             """Keep what was compiled for one signature."""
             cres = cres._replace(entry_point=object())  # in place of machine code, which it has not
             libraries = list(dict.fromkeys([cres.library, *cres.library._linking_libraries]))
-            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, libraries)
+            context, called = cres.target_context, cres.fndesc
+            if isinstance(called.restype, types.Optional):  # a code tells whether it is None
+                context.insert_user_function(cres.entry_point, called, libraries)
+            else:
+                call = _calling(called, libraries)
+                context.insert_func_defn([(call, cres.entry_point, called.argtypes)])
             self.overloads[tuple(cres.signature.args)] = cres
 
 

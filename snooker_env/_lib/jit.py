@@ -3,6 +3,7 @@
 * Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
 * No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch."""
 
+import dis
 import gc
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -18,6 +19,7 @@ from .cache import CACHE_FOLDER, Kept, lies_in_a_file
 from .command import say
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 
+_RAISE = dis.opmap["RAISE_VARARGS"]  # of "raise" and "assert"
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
@@ -45,6 +47,10 @@ class Entry(CPUDispatcher):
 
 
 def _inner(function, **options):
+    if _RAISE in function.__code__.co_code[::2]:  # of each two bytes the first says what to do
+        raise TypeError(
+            f"{function.__qualname__} raises errors, which no inner kernel can: return what says so"
+        )
     made = numba.njit(**_OPTIONS, **OPTIONS, **options)(function)
     if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Inner
@@ -54,7 +60,8 @@ def _inner(function, **options):
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot.
+    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot. It
+    must not raise: nothing asks whether it did, as a call would take longer then.
 
     Parameters
     ----------

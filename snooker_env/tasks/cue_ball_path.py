@@ -229,25 +229,6 @@ def leave(ball, ball_on, positions, on_table, after, there):
     return NONE
 
 
-@entry(what="the paths of cue balls", seconds=18)
-def predict(balls, rows, strokes, pots, errors, noise, law, out, left):
-    """Predict strokes (n, 5) at ``pots`` (n, 2), ball and pocket, on the tables ``rows`` (n,), each under standard normal
-    ``errors`` (k, 5): fills ``out`` (n k, SEEN) and ``left``: positions, on_table, the ball on or ``NONE`` after the pot."""
-    (positions, on_table, ball_on), (after, there, on) = balls, left
-    phys, ratios, fidelity, n_steps, most, rails = law
-    work, tried = new_work(), np.empty(5)
-    for j in range(out.shape[0]):
-        i = j // errors.shape[0]
-        k = rows[i]
-        own, ball, p, here = row_of(k, phys), pots[i, 0], positions[k], on_table[k]
-        its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
-        _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        played = stroke_in_room(tried[3], (tried[0], tried[1], tried[2], tried[4]), p, here, its)
-        foresee_pot(played, (ball, pots[i, 1]), p, here, its, work, out[j])
-        on[j] = leave(ball, ball_on[k], p, here, after[j], there[j])
-        after[j, 0, 0], after[j, 0, 1] = out[j, X], out[j, Y]
-
-
 @kernel
 def is_fair(ball, touching, on):
     """Whether a stroke whose cue ball meets ``ball``, 0 for none, is fair with these masks of balls that touch it and are on.
@@ -255,24 +236,47 @@ def is_fair(ball, touching, on):
     return ball > 0 and not (touching >> ball) & 1 and (touching & on != 0 or (on >> ball) & 1 != 0)
 
 
-@entry(what="the paths of both balls", seconds=18)
-def predict_contacts(balls, rows, strokes, errors, noise, law, out, left):
-    """Predict strokes (n, 5) at balls that are seen on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5):
-    fills ``out`` (n k, 2, SEEN), of the cue ball and the ball it meets, and ``left``: positions, that ball, whether fair."""
-    (positions, on_table, game), (after, met, legal) = balls, left
-    phys, ratios, fidelity, n_steps, most, rails = law
+@entry(what="the paths of balls", seconds=18)
+def predict(balls, rows, strokes, pots, errors, noise, law, out, met):
+    """Predict strokes (n, 5) on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5), at ``pots`` (n, 2), ball and
+    pocket, or for a ball 0 at whatever is in their way: fills ``out`` (n k, 1, SEEN), of the cue ball, or (n k, 2, SEEN), of
+    the ball in its way too, and ``met`` (n k,): the ball to be potted or the one in its way, 0 for none."""
+    (positions, on_table), (phys, ratios, fidelity, n_steps, most, rails) = balls, law
     work, tried = new_work(), np.empty(5)
     for j in range(out.shape[0]):
         i = j // errors.shape[0]
-        k = rows[i]
+        k, ball = rows[i], pots[i, 0]
         own, p, here = row_of(k, phys), positions[k], on_table[k]
-        near = touching_balls(p, here)
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        ball = met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
-        legal[j] = is_fair(ball, near, strikeable(game[k], bits(here) & ~1))
+        if ball:
+            played = stroke_in_room(tried[3], (tried[0], tried[1], tried[2], tried[4]), p, here, its)
+            foresee_pot(played, (ball, pots[i, 1]), p, here, its, work, out[j, 0])
+        else:
+            ball = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
+        met[j] = ball
+
+
+@entry
+def leave_pots(balls, rows, pots, seen, left):
+    """Fill ``left``: the positions, on_table and the ball on or ``NONE`` after ``pots`` (n, 2) of strokes ``seen`` (n, SEEN)."""
+    (positions, on_table, ball_on), (after, there, on) = balls, left
+    for j in range(rows.shape[0]):
+        k = rows[j]
+        on[j] = leave(pots[j, 0], ball_on[k], positions[k], on_table[k], after[j], there[j])
+        after[j, 0, 0], after[j, 0, 1] = seen[j, X], seen[j, Y]
+
+
+@entry
+def leave_contacts(balls, rows, met, seen, left):
+    """Fill ``left``: the positions after strokes without a pot that are ``seen`` (n, 2, SEEN) at the balls ``met`` (n,); whether fair."""
+    (positions, on_table, game), (after, fair) = balls, left
+    for j in range(rows.shape[0]):
+        k, ball = rows[j], met[j]
+        p, here = positions[k], on_table[k]
+        fair[j] = is_fair(ball, touching_balls(p, here), strikeable(game[k], bits(here) & ~1))
         for b in range(N_BALLS):
             after[j, b, 0], after[j, b, 1] = p[b, 0], p[b, 1]
         if ball:
-            after[j, 0, 0], after[j, 0, 1] = out[j, 0, X], out[j, 0, Y]
-            after[j, ball, 0], after[j, ball, 1] = out[j, 1, X], out[j, 1, Y]
+            after[j, 0, 0], after[j, 0, 1] = seen[j, 0, X], seen[j, 0, Y]
+            after[j, ball, 0], after[j, ball, 1] = seen[j, 1, X], seen[j, 1, Y]

@@ -44,12 +44,13 @@ def wanted_of(at, options, pot, index):
     spread = Spread(core, noise.lapse, noise.lapse_factor)
     length = np.hypot(*(ghost[0] - at.positions[0, 0])) + np.hypot(*(to[0] - at.positions[0, ball[0]]))
     chance = chance_at(pot.tolerance[0, line], length, spread)
-    out = np.empty((1, cue_ball_path.SEEN))
+    out, met, row = np.empty((1, 1, cue_ball_path.SEEN)), np.empty(1, int), np.zeros(1, int)
     left = (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int))
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])
-    balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(Dynamics.of(rules), at)
-    cue_ball_path.predict(balls, np.zeros(1, int), stroke, at_pot, *none, law, out, left)
-    seen = out[0]
+    balls, law = (at.positions, at.on_table), law_of(Dynamics.of(rules), at)
+    cue_ball_path.predict(balls, row, stroke, at_pot, *none, law, out, met)
+    cue_ball_path.leave_pots((*balls, at.ball_on), row, at_pot, out[:, 0], left)
+    seen = out[0, 0]
     wanted = {"there": 1.0, "pot": 1.0, "chance": chance, "log_chance": max(-1.0, log10(chance) / 2.0)}
     wanted |= {"points": max(1, ball[0] - 14) / 7.0, "speed": speed / 4.6, "top": top / 0.4}
     wanted |= {

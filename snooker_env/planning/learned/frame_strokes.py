@@ -71,17 +71,18 @@ class Foresight:
     ) -> Foreseen:
         """What strokes lead to, where the other and the striker make ``missed`` and ``goes_on`` (n,) of the balls as they lie."""
         m, k, errors = len(rows), samples, self._errors[:samples]
-        balls, law = (at.positions, at.on_table, at.game), law_of(self.dynamics, at)
+        rows = np.ascontiguousarray(rows)  # one type, one compile
+        balls, law, of = (at.positions, at.on_table), law_of(self.dynamics, at), np.repeat(rows, k)
         out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
-        met, legal = np.empty(m * k, np.int64), np.empty(m * k, np.bool_)
+        met, legal, no_pots = np.empty(m * k, np.int64), np.empty(m * k, np.bool_), np.zeros((m, 2), np.int64)
 
         def predict(part: slice) -> None:
-            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part])
-            left = places[all_of], met[all_of], legal[all_of]
-            path.predict_contacts(balls, *some, errors, self._noise, law, out[all_of], left)
+            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part], no_pots[part])
+            path.predict(balls, *some, errors, self._noise, law, out[all_of], met[all_of])
 
         in_parts(m, self.worth.value.threads, predict)
-        of, lost = np.repeat(rows, k), out[..., path.LOST] > 0.0
+        path.leave_contacts((*balls, at.game), of, met, out, (places, legal))
+        lost = out[..., path.LOST] > 0.0
         foul, potted = ~legal | lost[:, 0], legal & lost[:, 1] & ~lost[:, 0]
         gains = -missed[of]
         gains[potted] += POTTED * (VALUES[met] + goes_on[of] + missed[of])[potted]

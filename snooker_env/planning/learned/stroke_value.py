@@ -137,19 +137,21 @@ class StrokeValue:
         k, rows = len(self._errors), np.repeat(np.arange(n), m)
         at_pots = np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1)
         flat, each = strokes.reshape(-1, COLUMNS), n * m * k
-        out, on = np.empty((each, path.SEEN)), np.empty(each, np.int64)
+        of, pots_of = np.repeat(rows, k), np.repeat(at_pots, k, axis=0)
+        out, met, on = np.empty((each, 1, path.SEEN)), np.empty(each, np.int64), np.empty(each, np.int64)
         places, there = np.empty((each, N_BALLS, 2)), np.empty((each, N_BALLS), np.bool_)
-        balls, law = (at.positions, at.on_table, at.ball_on.copy()), law_of(self.dynamics, at)
+        balls, law = (at.positions, at.on_table), law_of(self.dynamics, at)
 
         def predict(part: slice) -> None:
             all_of = slice(k * part.start, k * part.stop)
-            left = places[all_of], there[all_of], on[all_of]
             some = rows[part], flat[part], at_pots[part]
-            path.predict(balls, *some, self._errors, self._noise, law, out[all_of], left)
+            path.predict(balls, *some, self._errors, self._noise, law, out[all_of], met[all_of])
 
         in_parts(len(rows), self.value.threads, predict)
+        seen = out[:, 0]
+        path.leave_pots((*balls, at.ball_on), of, pots_of, seen, (places, there, on))
         game, values = np.zeros((each, VISIT_COLUMNS), np.int64), np.zeros(each)
         game[:, BALL_ON] = on
-        live = np.flatnonzero((on < path.NONE) & (out[:, path.LOST] == 0.0) & (out[:, path.MISSED] == 0.0))
+        live = np.flatnonzero((on < path.NONE) & (seen[:, path.LOST] == 0.0) & (seen[:, path.MISSED] == 0.0))
         values[live] = self.value(Positions(places[live], there[live], game[live]))
         return out.reshape(n, m, k, -1), values.reshape(n, m, k)

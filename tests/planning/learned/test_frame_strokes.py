@@ -22,10 +22,11 @@ def predicted(search, at, rows, strokes):
     """Of strokes without errors: what is predicted, where the balls lie then, and which ball is met and whether fairly."""
     m, none = len(rows), (np.zeros((1, 5)), Noise().pack(0.02625, real=True))
     out, places = np.empty((m, 2, path.SEEN)), np.empty((m, 22, 2))
-    told = np.empty(m, np.int64), np.empty(m, np.bool_)
-    balls, law = (at.positions, at.on_table, at.game), law_of(search.dynamics, at)
-    path.predict_contacts(balls, rows, strokes, *none, law, out, (places, *told))
-    return out, places, told
+    met, fair = np.empty(m, np.int64), np.empty(m, np.bool_)
+    balls, law = (at.positions, at.on_table), law_of(search.dynamics, at)
+    path.predict(balls, rows, strokes, np.zeros((m, 2), np.int64), *none, law, out, met)
+    path.leave_contacts((*balls, at.game), rows, met, out, (places, fair))
+    return out, places, (met, fair)
 
 
 def contacts(frame, position, strokes):
