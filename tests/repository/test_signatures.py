@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from snooker_env.kernels import kernel
+from tests.kernels import from_python
 from tests.processes import python
 
 INPUTS = """
@@ -128,3 +130,22 @@ print(json.dumps([[k.__qualname__ for k in ENTRIES if test(len(k.signatures))] f
     out, err = python(code)
     never, again = json.loads(out)
     assert set(never) <= PARTS and again == [] and err == ""
+
+
+def test_an_inner_kernel_that_raises_is_refused():
+    def checked(x):
+        assert x > 0.0
+        return x
+
+    def drawn(x):
+        if x < 0.0:
+            raise ValueError(x)
+        return x
+
+    for function in checked, drawn:
+        with pytest.raises(TypeError, match=f"{function.__name__} raises errors, which no inner kernel can"):
+            kernel(function)
+    half = from_python(
+        kernel(lambda x: None if x == 0.0 else 0.5 * x)
+    )  # None is told by the code of an error
+    assert half(0.0) is None and half(3.0) == 1.5
