@@ -1,7 +1,8 @@
-"""How far is a long command? On a terminal ``tqdm`` says it; elsewhere, and with ``SNOOKER_ENV_QUIET=1``, nothing does."""
+"""How far is a long command? On a terminal ``tqdm`` says it, elsewhere a line a minute, with ``SNOOKER_ENV_QUIET=1`` nothing."""
 
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TextIO
@@ -9,6 +10,8 @@ from typing import TextIO
 from tqdm import tqdm
 
 __all__ = ["Progress"]
+
+EVERY = 60.0  # between two lines [s]
 
 
 class Progress(tqdm):
@@ -21,7 +24,7 @@ class Progress(tqdm):
     done : int
         Amount that an earlier run did, if this one resumes it.
     to : text stream, optional
-        Default None: ``sys.stderr``. Nothing is written unless it is a terminal.
+        Default None: ``sys.stderr``. If it is no terminal, it gets a line a minute.
 
     Examples
     --------
@@ -33,14 +36,15 @@ class Progress(tqdm):
 
     def __init__(self, what: str, total: int, unit: str, *, done: int = 0, to: TextIO | None = None):
         self.done: int = done
-        silent = os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
+        self._what, self._all, self._last = what, f"{total:,} {unit}", time.monotonic()
+        self._to, self._silent = to or sys.stderr, os.environ.get("SNOOKER_ENV_QUIET", "0") not in ("", "0")
         super().__init__(
             desc=what,
             total=total,
             initial=done,
             unit=f" {unit}",
-            file=to or sys.stderr,
-            disable=True if silent else None,  # None: where there is no terminal
+            file=self._to,
+            disable=True if self._silent else None,  # None: where there is no terminal
             dynamic_ncols=True,
         )
 
@@ -48,7 +52,11 @@ class Progress(tqdm):
         """Note how much is done, and ``figures`` to say with it."""
         self.set_postfix_str(figures, refresh=False)
         self.update(done - self.done)
-        self.done = done
+        self.done, now = done, time.monotonic()
+        if self.disable and not self._silent and now - self._last >= EVERY:
+            self._last = now
+            line = f"{self._what}: {done:,} of {self._all}{figures and ', '}{figures}"
+            print(line, file=self._to, flush=True)
 
 
 @contextmanager

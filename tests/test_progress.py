@@ -4,6 +4,7 @@ import io
 
 import pytest
 
+from snooker_env import progress
 from snooker_env.progress import Progress
 
 
@@ -15,9 +16,9 @@ class Terminal(io.StringIO):
 
 
 def said(out):
-    with Progress("part 1 of 2, play", 1000, "shots", to=out, done=300) as progress:
-        progress.at(400, "round 4, loss 2.00")
-    assert progress.done == 400
+    with Progress("part 1 of 2, play", 1000, "shots", to=out, done=300) as shown:
+        shown.at(400, "round 4, loss 2.00")
+    assert shown.done == 400
     return out.getvalue()
 
 
@@ -28,7 +29,15 @@ def test_a_terminal_is_told_what_is_done_and_with_which_figures(monkeypatch):
     assert "400/1000" in text and " shots" in text and "round 4, loss 2.00" in text and text.endswith("\n")
 
 
-@pytest.mark.parametrize("out, environment", [(io.StringIO(), "0"), (Terminal(), "1")])
-def test_a_file_and_a_quiet_process_are_told_nothing(out, environment, monkeypatch):
-    monkeypatch.setenv("SNOOKER_ENV_QUIET", environment)
+@pytest.mark.parametrize("out", [io.StringIO(), Terminal()])
+def test_a_quiet_process_is_told_nothing(out, monkeypatch):
+    monkeypatch.setenv("SNOOKER_ENV_QUIET", "1")
+    monkeypatch.setattr(progress, "EVERY", 0.0)
     assert said(out) == ""
+
+
+def test_a_file_is_told_a_line_a_minute(monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET", raising=False)
+    assert said(io.StringIO()) == ""
+    monkeypatch.setattr(progress, "EVERY", 0.0)
+    assert said(io.StringIO()) == "part 1 of 2, play: 400 of 1,000 shots, round 4, loss 2.00\n"
