@@ -63,8 +63,9 @@ class _Library(_Code):
             if not function.is_declaration and function.linkage == binding.Linkage.external:
                 function.linkage = "weak_odr"  # not "linkonce": LLVM would link what is referred to already
         self._shared_module = self._final_module
-        for library in self._linking_libraries:
-            self._reload_init.update(library._reload_init)
+        if hasattr(self, "_reload_init"):  # not in 0.62
+            for library in self._linking_libraries:
+                self._reload_init.update(library._reload_init)
         self._finalized = True
 
 
@@ -186,10 +187,9 @@ def _calling(called, libraries):
 
     def call(context, builder, _, args):
         function = context.declare_function(builder.module, called)
-        result, error = function.args[0].type.pointee, function.args[1].type
-        result = cgutils.alloca_once(builder, result)
+        result = cgutils.alloca_once(builder, function.args[0].type.pointee)
         args = context.get_arg_packer(called.argtypes).as_arguments(builder, args)
-        builder.call(function, [result, error(None), *args])
+        builder.call(function, [result, builder.function.args[1], *args])  # the second: where an error is put
         return context.get_returned_value(builder, called.restype, builder.load(result))
 
     call.libs = tuple(libraries)

@@ -19,7 +19,10 @@ from .cache import CACHE_FOLDER, Kept, lies_in_a_file
 from .command import say
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 
-_RAISE = dis.opmap["RAISE_VARARGS"]  # of "raise" and "assert"
+_ERRORS = {
+    dis.opmap["RAISE_VARARGS"],
+    dis.opmap.get("SETUP_FINALLY", 255),
+}  # the second: "try" in Python 3.10
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made
@@ -47,10 +50,9 @@ class Entry(CPUDispatcher):
 
 
 def _inner(function, **options):
-    if _RAISE in function.__code__.co_code[::2]:  # of each two bytes the first says what to do
-        raise TypeError(
-            f"{function.__qualname__} raises errors, which no inner kernel can: return what says so"
-        )
+    code = function.__code__  # of each two bytes the first says what to do
+    if not _ERRORS.isdisjoint(code.co_code[::2]) or getattr(code, "co_exceptiontable", b""):
+        raise TypeError(f"{function.__qualname__} raises or catches errors, which no inner kernel can")
     made = numba.njit(**_OPTIONS, **OPTIONS, **options)(function)
     if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Inner
@@ -60,8 +62,8 @@ def _inner(function, **options):
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot. It
-    must not raise: nothing asks whether it did, as a call would take longer then.
+    Python cannot call it. It must not make arrays, so that numba need not count references: a fifth of a shot. Nor
+    may anything in it raise, or two kernels call each other: no call asks whether it failed, and the result is undefined.
 
     Parameters
     ----------

@@ -238,23 +238,23 @@ def is_fair(ball, touching, on):
 
 @entry(what="the paths of balls", seconds=18)
 def predict(balls, rows, strokes, pots, errors, noise, law, out, met):
-    """Predict strokes (n, 5) on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5), at ``pots`` (n, 2), ball and
-    pocket, or for a ball 0 at whatever is in their way: fills ``out`` (n k, 1, SEEN), of the cue ball, or (n k, 2, SEEN), of
-    the ball in its way too, and ``met`` (n k,): the ball to be potted or the one in its way, 0 for none."""
+    """Predict strokes (n, 5) on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5): at ``pots`` (n, 2), ball and
+    pocket, into ``out`` (n k, 1, SEEN), of the cue ball, or, into ``out`` (n k, 2, SEEN), at whatever is in their way, which is
+    the second of the two. Fills ``met`` (n k,): the ball to be potted or the one in the way, 0 for none."""
     (positions, on_table), (phys, ratios, fidelity, n_steps, most, rails) = balls, law
     work, tried = new_work(), np.empty(5)
     for j in range(out.shape[0]):
         i = j // errors.shape[0]
-        k, ball = rows[i], pots[i, 0]
+        k = rows[i]
         own, p, here = row_of(k, phys), positions[k], on_table[k]
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
-        if ball:
+        if out.shape[1] == 1:
+            met[j] = pots[i, 0]
             played = stroke_in_room(tried[3], (tried[0], tried[1], tried[2], tried[4]), p, here, its)
-            foresee_pot(played, (ball, pots[i, 1]), p, here, its, work, out[j, 0])
+            foresee_pot(played, (met[j], pots[i, 1]), p, here, its, work, out[j, 0])
         else:
-            ball = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
-        met[j] = ball
+            met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
 
 
 @entry

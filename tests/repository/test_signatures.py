@@ -125,6 +125,10 @@ def test_a_warm_up_leaves_nothing_to_compile():
 import json, snooker_env as sn
 from snooker_env._lib.jit import ENTRIES
 sn.warmup()
+for n in (1, 3):
+    env = sn.SnookerVectorEnv(n)
+    env.reset(seed=0)
+    sn.players.player("stroke_value").at({}).play(env, list(range(n)))
 print(json.dumps([[k.__qualname__ for k in ENTRIES if test(len(k.signatures))] for test in (lambda n: not n, lambda n: n > 1)]))
 """
     out, err = python(code)
@@ -142,8 +146,16 @@ def test_an_inner_kernel_that_raises_is_refused():
             raise ValueError(x)
         return x
 
-    for function in checked, drawn:
-        with pytest.raises(TypeError, match=f"{function.__name__} raises errors, which no inner kernel can"):
+    def caught(x):
+        try:
+            return 1.0 / x
+        except ZeroDivisionError:
+            return x
+
+    for function in checked, drawn, caught:
+        with pytest.raises(
+            TypeError, match=f"{function.__name__} raises or catches errors, which no inner kernel"
+        ):
             kernel(function)
     half = from_python(
         kernel(lambda x: None if x == 0.0 else 0.5 * x)

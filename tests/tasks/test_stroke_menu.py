@@ -49,7 +49,7 @@ def wanted_of(at, options, pot, index):
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])
     balls, law = (at.positions, at.on_table), law_of(Dynamics.of(rules), at)
     cue_ball_path.predict(balls, row, stroke, at_pot, *none, law, out, met)
-    cue_ball_path.leave_pots((*balls, at.ball_on), row, at_pot, out[:, 0], left)
+    cue_ball_path.leave_pots((*balls, at.ball_on.copy()), row, at_pot, out[:, 0], left)
     seen = out[0, 0]
     wanted = {"there": 1.0, "pot": 1.0, "chance": chance, "log_chance": max(-1.0, log10(chance) / 2.0)}
     wanted |= {"points": max(1, ball[0] - 14) / 7.0, "speed": speed / 4.6, "top": top / 0.4}

@@ -74,10 +74,10 @@ class Foresight:
         rows = np.ascontiguousarray(rows)  # one type, one compile
         balls, law, of = (at.positions, at.on_table), law_of(self.dynamics, at), np.repeat(rows, k)
         out, places = np.empty((m * k, 2, path.SEEN)), np.empty((m * k, N_BALLS, 2))
-        met, legal, no_pots = np.empty(m * k, np.int64), np.empty(m * k, np.bool_), np.zeros((m, 2), np.int64)
+        met, legal, no_pots = np.empty(m * k, np.int64), np.empty(m * k, np.bool_), np.empty((0, 2), np.int64)
 
         def predict(part: slice) -> None:
-            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part], no_pots[part])
+            all_of, some = slice(k * part.start, k * part.stop), (rows[part], strokes[part], no_pots)
             path.predict(balls, *some, errors, self._noise, law, out[all_of], met[all_of])
 
         in_parts(m, self.worth.value.threads, predict)

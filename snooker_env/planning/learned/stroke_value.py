@@ -149,7 +149,7 @@ class StrokeValue:
 
         in_parts(len(rows), self.value.threads, predict)
         seen = out[:, 0]
-        path.leave_pots((*balls, at.ball_on), of, pots_of, seen, (places, there, on))
+        path.leave_pots((*balls, at.ball_on.copy()), of, pots_of, seen, (places, there, on))
         game, values = np.zeros((each, VISIT_COLUMNS), np.int64), np.zeros(each)
         game[:, BALL_ON] = on
         live = np.flatnonzero((on < path.NONE) & (seen[:, path.LOST] == 0.0) & (seen[:, path.MISSED] == 0.0))

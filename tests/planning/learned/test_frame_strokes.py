@@ -24,7 +24,7 @@ def predicted(search, at, rows, strokes):
     out, places = np.empty((m, 2, path.SEEN)), np.empty((m, 22, 2))
     met, fair = np.empty(m, np.int64), np.empty(m, np.bool_)
     balls, law = (at.positions, at.on_table), law_of(search.dynamics, at)
-    path.predict(balls, rows, strokes, np.zeros((m, 2), np.int64), *none, law, out, met)
+    path.predict(balls, rows, strokes, np.empty((0, 2), np.int64), *none, law, out, met)
     path.leave_contacts((*balls, at.game), rows, met, out, (places, fair))
     return out, places, (met, fair)
 
