@@ -111,7 +111,8 @@ def _finding_once():
 _UNUSED = "WithLifting InlineClosureLikes RewriteDynamicRaises MakeFunctionToJitFunction FindLiterallyCalls "
 _UNUSED += "LiteralUnroll LiteralPropagationSubPipelinePass InlineOverloads NopythonRewrites "
 _UNUSED += "NoPythonSupportedFeatureValidation DumpParforDiagnostics IRLegalization AnnotateTypes"
-"""Passes of numba for what no inner kernel has: contexts, closures, exceptions, literals, sums of arrays."""
+"""Passes of numba for what no inner kernel has (contexts, closures, exceptions, literals, sums of arrays) or needs
+(the end of each variable, notes of its type)."""
 
 
 _HASH = hash(compiler.Flags())  # of the names of all flags

@@ -19,10 +19,8 @@ from .cache import CACHE_FOLDER, Kept, lies_in_a_file
 from .command import say
 from .inner import ENTRY_OPTIONS, OPTIONS, Inner
 
-_ERRORS = {
-    dis.opmap["RAISE_VARARGS"],
-    dis.opmap.get("SETUP_FINALLY", 255),
-}  # the second: "try" in Python 3.10
+# of "raise", of "assert" and, in Python 3.10, of "try": newer ones keep a table of it
+_ERRORS = {dis.opmap[name] for name in ("RAISE_VARARGS", "SETUP_FINALLY") if name in dis.opmap}
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 ENTRIES: list[Any] = []  # all entry kernels of this process, in the order in which they were made

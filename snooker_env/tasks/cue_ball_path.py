@@ -239,8 +239,8 @@ def is_fair(ball, touching, on):
 @entry(what="the paths of balls", seconds=18)
 def predict(balls, rows, strokes, pots, errors, noise, law, out, met):
     """Predict strokes (n, 5) on the tables ``rows`` (n,), each under standard normal ``errors`` (k, 5): at ``pots`` (n, 2), ball and
-    pocket, into ``out`` (n k, 1, SEEN), of the cue ball, or, into ``out`` (n k, 2, SEEN), at whatever is in their way, which is
-    the second of the two. Fills ``met`` (n k,): the ball to be potted or the one in the way, 0 for none."""
+    pocket, into ``out`` (n k, 1, SEEN), of the cue ball, or, into ``out`` (n k, 2, SEEN), at whatever is in their way, the second
+    of the two: ``met`` (n k,) is that ball, 0 for none."""
     (positions, on_table), (phys, ratios, fidelity, n_steps, most, rails) = balls, law
     work, tried = new_work(), np.empty(5)
     for j in range(out.shape[0]):
@@ -250,9 +250,8 @@ def predict(balls, rows, strokes, pots, errors, noise, law, out, met):
         its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         _with_error(strokes[i], errors[j % errors.shape[0]], noise, most, tried)
         if out.shape[1] == 1:
-            met[j] = pots[i, 0]
             played = stroke_in_room(tried[3], (tried[0], tried[1], tried[2], tried[4]), p, here, its)
-            foresee_pot(played, (met[j], pots[i, 1]), p, here, its, work, out[j, 0])
+            foresee_pot(played, (pots[i, 0], pots[i, 1]), p, here, its, work, out[j, 0])
         else:
             met[j] = foresee_contact(tried, p, here, its, work, out[j, 0], out[j, 1])
 

@@ -157,7 +157,9 @@ def test_an_inner_kernel_that_raises_is_refused():
             TypeError, match=f"{function.__name__} raises or catches errors, which no inner kernel"
         ):
             kernel(function)
-    half = from_python(
-        kernel(lambda x: None if x == 0.0 else 0.5 * x)
-    )  # None is told by the code of an error
+
+
+def test_an_inner_kernel_may_return_none_or_a_number():
+    """numba tells None by the code that says whether a kernel raised."""
+    half = from_python(kernel(lambda x: None if x == 0.0 else 0.5 * x))
     assert half(0.0) is None and half(3.0) == 1.5

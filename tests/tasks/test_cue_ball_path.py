@@ -19,12 +19,12 @@ def predicted(at, rows, strokes, options, pot=None):
     at_pots = np.stack([direct.ball[rows, 0], direct.pocket[rows, 0]], axis=1)
     if pot is not None:
         at_pots[:] = pot
-    out, met, on = np.empty((n, 1, cue_ball_path.SEEN)), np.empty(n, np.int64), np.empty(n, np.int64)
+    out, none, on = np.empty((n, 1, cue_ball_path.SEEN)), np.empty(0, np.int64), np.empty(n, np.int64)
     places, there = np.empty((n, 22, 2)), np.empty((n, 22), np.bool_)
     balls = at.positions, at.on_table
     law = law_of(Dynamics.of(sn.Options(**options).rules), at)
-    none = np.zeros((1, 5)), Noise().pack(0.02625)
-    cue_ball_path.predict(balls, rows, strokes, at_pots, *none, law, out, met)
+    exact = np.zeros((1, 5)), Noise().pack(0.02625)
+    cue_ball_path.predict(balls, rows, strokes, at_pots, *exact, law, out, none)
     cue_ball_path.leave_pots((*balls, at.ball_on.copy()), rows, at_pots, out[:, 0], (places, there, on))
     return out[:, 0], Positions(places, there, np.column_stack([on, np.zeros((n, 4), np.int64)]))
 

@@ -44,11 +44,11 @@ def wanted_of(at, options, pot, index):
     spread = Spread(core, noise.lapse, noise.lapse_factor)
     length = np.hypot(*(ghost[0] - at.positions[0, 0])) + np.hypot(*(to[0] - at.positions[0, ball[0]]))
     chance = chance_at(pot.tolerance[0, line], length, spread)
-    out, met, row = np.empty((1, 1, cue_ball_path.SEEN)), np.empty(1, int), np.zeros(1, int)
+    out, no_balls, row = np.empty((1, 1, cue_ball_path.SEEN)), np.empty(0, int), np.zeros(1, int)
     left = (np.empty((1, 22, 2)), np.empty((1, 22), bool), np.empty(1, int))
     none, at_pot = (np.zeros((1, 5)), Noise().pack(0.02625)), np.array([[ball[0], pocket[0]]])
     balls, law = (at.positions, at.on_table), law_of(Dynamics.of(rules), at)
-    cue_ball_path.predict(balls, row, stroke, at_pot, *none, law, out, met)
+    cue_ball_path.predict(balls, row, stroke, at_pot, *none, law, out, no_balls)
     cue_ball_path.leave_pots((*balls, at.ball_on.copy()), row, at_pot, out[:, 0], left)
     seen = out[0, 0]
     wanted = {"there": 1.0, "pot": 1.0, "chance": chance, "log_chance": max(-1.0, log10(chance) / 2.0)}

@@ -138,14 +138,14 @@ class StrokeValue:
         at_pots = np.stack([pot.ball.reshape(-1), pot.pocket.reshape(-1)], axis=1)
         flat, each = strokes.reshape(-1, COLUMNS), n * m * k
         of, pots_of = np.repeat(rows, k), np.repeat(at_pots, k, axis=0)
-        out, met, on = np.empty((each, 1, path.SEEN)), np.empty(each, np.int64), np.empty(each, np.int64)
+        out, on, no_balls = np.empty((each, 1, path.SEEN)), np.empty(each, np.int64), np.empty(0, np.int64)
         places, there = np.empty((each, N_BALLS, 2)), np.empty((each, N_BALLS), np.bool_)
         balls, law = (at.positions, at.on_table), law_of(self.dynamics, at)
 
         def predict(part: slice) -> None:
             all_of = slice(k * part.start, k * part.stop)
             some = rows[part], flat[part], at_pots[part]
-            path.predict(balls, *some, self._errors, self._noise, law, out[all_of], met[all_of])
+            path.predict(balls, *some, self._errors, self._noise, law, out[all_of], no_balls)
 
         in_parts(len(rows), self.value.threads, predict)
         seen = out[:, 0]
