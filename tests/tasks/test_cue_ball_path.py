@@ -89,6 +89,7 @@ def test_which_ball_is_on_next(position, after, on):
     out, left = predicted(at, np.array([0]), strokes, {})
     assert left.ball_on.tolist() == [on] and left.on_table[0, 1:].sum() == after
     assert out[0, cue_ball_path.MISSED] == 2.0 and out[0, cue_ball_path.NOSES] == 0.0
+    assert left.positions[0, 0].tolist() == out[0, [cue_ball_path.X, cue_ball_path.Y]].tolist()
 
 
 def test_balls_that_were_met_and_the_potted_one_are_met_no_more():

@@ -59,6 +59,9 @@ def test_both_balls_come_to_rest_where_it_is_predicted():
     at, rows, out, (places, met, legal), after = compared(60)
     assert len(rows) > 500
     every = np.arange(len(rows))
+    wanted, some = at.positions[rows], np.flatnonzero(met)
+    wanted[some, 0], wanted[some, met[some]] = out[some, :, : path.Y + 1].swapaxes(0, 1)
+    assert (places == wanted).all()
     swing = lead_of(after) - lead_of(at)[rows]
     moved = np.hypot(*np.moveaxis(after.positions - at.positions[rows], -1, 0)) > 1e-9
     moved[~at.on_table[rows]] = False
